@@ -1,0 +1,1 @@
+//! Raw records as the specifications of the file formats write them, both directions.

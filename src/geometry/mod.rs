@@ -1,0 +1,13 @@
+//! Points, planes, similarities, cameras and spatial indices. No files, no randomness.
+//!
+//! Frames stand in names: `x_in_city`, `n_in_sfm`; a transform is always `to_from_from`, so that
+//! `city_from_cam = city_from_sfm * sfm_from_cam` cancels by reading. *City*: metres, z up, about a local origin.
+//! *Sfm*: one reconstruction's own frame, of arbitrary scale. *Cam*: x right, y down, z forward.
+
+mod plane;
+mod similarity;
+
+pub use plane::Plane;
+pub use similarity::{NotASimilarity, Similarity};
+
+pub use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};

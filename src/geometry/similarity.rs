@@ -1,0 +1,146 @@
+//! Similarities `x_to = scale * rotation * x_from + translation`, named `to_from_from`.
+
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+
+/// How far a matrix may stray from orthonormal (largest entry of `R R^T - I`) and still be taken for a rotation that
+/// was written with few digits.
+const ROTATION_TOLERANCE: f64 = 1e-6;
+
+/// `x_to = scale * rotation * x_from + translation`, with `scale > 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Similarity {
+    /// Units of the target frame per unit of the source frame.
+    pub scale: f64,
+    pub rotation: Rotation3<f64>,
+    /// In units of the target frame.
+    pub translation: Vector3<f64>,
+}
+
+/// Why numbers are no similarity.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NotASimilarity {
+    #[error("scale is {0}, expected a positive finite number")]
+    Scale(f64),
+    #[error("rotation is not orthonormal (R R^T differs from the identity by {0:.3e}, at most 1e-6 is allowed)")]
+    NotOrthonormal(f64),
+    #[error("rotation is a reflection (its determinant is -1, expected +1)")]
+    Reflection,
+    #[error("a coordinate is not finite")]
+    NotFinite,
+}
+
+impl Similarity {
+    pub fn identity() -> Similarity {
+        Similarity { scale: 1.0, rotation: Rotation3::identity(), translation: Vector3::zeros() }
+    }
+
+    /// Checks the parts and makes the rotation exactly orthonormal (nearest rotation).
+    pub fn try_new(
+        scale: f64,
+        rotation: Matrix3<f64>,
+        translation: Vector3<f64>,
+    ) -> Result<Similarity, NotASimilarity> {
+        if !(scale.is_finite() && scale > 0.0) {
+            return Err(NotASimilarity::Scale(scale));
+        }
+        if !rotation.iter().chain(translation.iter()).all(|v| v.is_finite()) {
+            return Err(NotASimilarity::NotFinite);
+        }
+        let stray = (rotation * rotation.transpose() - Matrix3::identity()).amax();
+        if stray > ROTATION_TOLERANCE {
+            return Err(NotASimilarity::NotOrthonormal(stray));
+        }
+        if rotation.determinant() < 0.0 {
+            return Err(NotASimilarity::Reflection);
+        }
+        Ok(Similarity { scale, rotation: nearest_rotation(rotation), translation })
+    }
+
+    /// The similarity that turns and scales about `pivot` (source frame) and sends it to `image`.
+    pub fn about(pivot: &Point3<f64>, image: &Point3<f64>, scale: f64, rotation: Rotation3<f64>) -> Similarity {
+        Similarity { scale, rotation, translation: image.coords - scale * (rotation * pivot.coords) }
+    }
+
+    pub fn apply(&self, point: &Point3<f64>) -> Point3<f64> {
+        Point3::from(self.scale * (self.rotation * point.coords) + self.translation)
+    }
+
+    pub fn inverse(&self) -> Similarity {
+        let rotation = self.rotation.inverse();
+        let scale = self.scale.recip();
+        Similarity { scale, rotation, translation: -(scale * (rotation * self.translation)) }
+    }
+
+    /// The same map into coordinates whose origin lies at `origin` of the present target frame.
+    pub fn relative_to(&self, origin: &Vector3<f64>) -> Similarity {
+        Similarity { translation: self.translation - origin, ..*self }
+    }
+}
+
+impl std::ops::Mul for Similarity {
+    type Output = Similarity;
+
+    /// `a_from_c = a_from_b * b_from_c`
+    fn mul(self, inner: Similarity) -> Similarity {
+        Similarity {
+            scale: self.scale * inner.scale,
+            rotation: self.rotation * inner.rotation,
+            translation: self.scale * (self.rotation * inner.translation) + self.translation,
+        }
+    }
+}
+
+/// Nearest rotation to a nearly orthonormal matrix: Newton's iteration for the polar factor, `R <- (R + R^-T) / 2`.
+fn nearest_rotation(matrix: Matrix3<f64>) -> Rotation3<f64> {
+    let mut r = matrix;
+    // Convergence is quadratic from an error of 1e-6: two steps reach rounding, the third costs nothing.
+    for _ in 0..3 {
+        if let Some(inverse) = r.try_inverse() {
+            r = 0.5 * (r + inverse.transpose());
+        }
+    }
+    Rotation3::from_matrix_unchecked(r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn example() -> Similarity {
+        Similarity {
+            scale: 2.5,
+            rotation: Rotation3::from_euler_angles(0.3, -0.4, 1.9),
+            translation: Vector3::new(5.0, -7.0, 0.5),
+        }
+    }
+
+    #[test]
+    fn inverse_undoes() {
+        let p = Point3::new(1.0, 2.0, 3.0);
+        assert!((example().inverse().apply(&example().apply(&p)) - p).norm() < 1e-14);
+        let both = example() * example().inverse();
+        assert!((both.scale - 1.0).abs() < 1e-15 && both.translation.norm() < 1e-14);
+    }
+
+    #[test]
+    fn refuses_what_is_no_similarity() {
+        let r = example().rotation.into_inner();
+        let t = Vector3::zeros();
+        assert!(matches!(Similarity::try_new(0.0, r, t), Err(NotASimilarity::Scale(_))));
+        assert!(matches!(Similarity::try_new(f64::NAN, r, t), Err(NotASimilarity::Scale(_))));
+        assert!(matches!(Similarity::try_new(1.0, 1.01 * r, t), Err(NotASimilarity::NotOrthonormal(_))));
+        assert!(matches!(Similarity::try_new(1.0, -r, t), Err(NotASimilarity::Reflection)));
+        assert!(matches!(
+            Similarity::try_new(1.0, r, Vector3::new(f64::INFINITY, 0.0, 0.0)),
+            Err(NotASimilarity::NotFinite)
+        ));
+    }
+
+    #[test]
+    fn makes_a_rotation_of_few_digits_exact() {
+        let rough = example().rotation.into_inner().map(|v| (v * 1e7).round() / 1e7);
+        let made = Similarity::try_new(1.0, rough, Vector3::zeros()).unwrap();
+        let m = made.rotation.into_inner();
+        assert!((m * m.transpose() - Matrix3::identity()).amax() < 1e-15);
+    }
+}

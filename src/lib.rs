@@ -9,3 +9,8 @@ pub mod format;
 pub mod geometry;
 pub mod imagery;
 pub mod reconstruction;
+pub mod verdict;
+
+mod align;
+
+pub use align::{AlignOptions, Progress, Up, align};

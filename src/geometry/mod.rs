@@ -6,8 +6,10 @@
 
 mod plane;
 mod similarity;
+mod start;
 
 pub use plane::Plane;
 pub use similarity::{NotASimilarity, Similarity};
+pub use start::Start;
 
 pub use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};

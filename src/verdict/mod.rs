@@ -1,0 +1,111 @@
+//! What was found, how sure it is, and on which evidence: the one struct that the report, the picture and the summary are
+//! views of. Verdicts read evidence; they never estimate.
+
+use crate::geometry::{Point3, Similarity, Vector3};
+
+/// How sure the program is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every freedom is determined and no other pose explains the data nearly as well.
+    Aligned,
+    /// At least one freedom is not fixed by the data.
+    Undetermined,
+    /// Two or more distinct poses explain the data.
+    Ambiguous,
+    /// Nothing explains the data better than chance.
+    Failed,
+}
+
+impl Verdict {
+    /// The word that the report uses.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Aligned => "aligned",
+            Verdict::Undetermined => "undetermined",
+            Verdict::Ambiguous => "ambiguous",
+            Verdict::Failed => "failed",
+        }
+    }
+}
+
+/// The outcome of an alignment. Similarities map the reconstruction to absolute city coordinates.
+#[derive(Clone, Debug)]
+pub struct Alignment {
+    pub verdict: Verdict,
+    /// One sentence with figures.
+    pub reason: String,
+    /// What fits best; `None` only with [`Verdict::Failed`]. The report calls it `transform` where the verdict is
+    /// aligned and `best_candidate` otherwise.
+    pub best: Option<Similarity>,
+    /// Other distinct poses, heaviest first.
+    pub alternatives: Vec<Alternative>,
+    /// Local origin of the city model, metres.
+    pub origin: Vector3<f64>,
+    /// Centre of the scene that the covariance is about, absolute city coordinates.
+    pub center: Point3<f64>,
+    pub freedoms: Vec<Freedom>,
+    /// Rows and columns: rotation vector about `center` (rad), translation of `center` (m), log scale; city frame.
+    pub covariance: [[f64; 7]; 7],
+    pub support: Support,
+    pub evidence: Vec<PlaneEvidence>,
+    pub search: SearchSummary,
+    pub warnings: Vec<String>,
+}
+
+/// Another pose that explains the data.
+#[derive(Clone, Debug)]
+pub struct Alternative {
+    pub city_from_sfm: Similarity,
+    /// Share of belief among all poses kept, 0 to 1.
+    pub weight: f64,
+    /// In words: "turned 180.0 deg about up at (..)".
+    pub differs: String,
+}
+
+/// One of the seven freedoms in the basis that the data suggest.
+#[derive(Clone, Debug)]
+pub struct Freedom {
+    /// In words: "along up", "along the street (azimuth 31 deg)", "heading", "scale".
+    pub name: String,
+    /// City frame; zero for the scale.
+    pub direction: Vector3<f64>,
+    /// One standard deviation, in `unit`.
+    pub sigma: f64,
+    /// "m", "deg" or "1" (log scale).
+    pub unit: &'static str,
+    pub determined: bool,
+}
+
+/// How well the points lie on the city.
+#[derive(Clone, Debug, Default)]
+pub struct Support {
+    /// Points of the reconstruction that belong to a patch.
+    pub points: usize,
+    /// Those of them that lie on a facet of the city in the best pose.
+    pub trusted_points: usize,
+    /// City planes with trusted points.
+    pub planes: usize,
+    /// Of the trusted points.
+    pub rms_m: f64,
+    /// Of the trusted points.
+    pub median_m: f64,
+}
+
+/// What one city plane contributes.
+#[derive(Clone, Debug)]
+pub struct PlaneEvidence {
+    /// Index of the plane in the city's planes.
+    pub plane: u32,
+    pub object: String,
+    pub points: usize,
+    pub rms_m: f64,
+}
+
+/// What the search did.
+#[derive(Clone, Debug, Default)]
+pub struct SearchSummary {
+    /// Configuration of the minimal solver that made the winning hypothesis.
+    pub solver: String,
+    pub samples: u64,
+    pub seed: u64,
+}

@@ -1,18 +1,107 @@
 //! Photographs, label images and superpixels; which points of a reconstruction fall on which superpixel.
+//!
+//! Question: which points does one photograph show on one small, even piece of surface?
+//! Input: a reconstruction with its observations; a folder of label images, or of photographs.
+//! Output: per image and superpixel the points whose observations fall on it.
+//! Method: a label image is read as it stands; a photograph is cut into superpixels ([`slic`]); an observation at
+//! (x, y) falls on the superpixel of the pixel (floor x, floor y).
+//! Assumptions: the files show the pixels that the reconstruction was made from, at whatever size.
+//! Fails when: no file is found, a file cannot be read, or its shape is not the camera's.
 
-use crate::reconstruction::{ImageIndex, PointIndex};
+mod files;
+mod labels;
+mod lift;
+mod photos;
+mod slic;
 
-/// One superpixel of one image with the points whose observations fall on it.
-#[derive(Clone, Debug)]
-pub struct Superpixel {
-    pub image: ImageIndex,
-    pub label: u32,
-    /// Sorted, unique.
-    pub points: Vec<PointIndex>,
+use std::path::{Path, PathBuf};
+
+pub use labels::LabelMap;
+pub use lift::{LiftedSuperpixels, Superpixel, lift_superpixels};
+pub use slic::{SlicOptions, slic};
+
+/// Where superpixels come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SuperpixelSource {
+    /// A folder of label images: PNG, 8 or 16 bit grey, same path and stem as the photograph.
+    Labels(PathBuf),
+    /// A folder of photographs, JPEG or PNG, which are cut into superpixels.
+    Photos(PathBuf),
 }
 
-/// All superpixels that points fall on.
-#[derive(Clone, Debug, Default)]
-pub struct LiftedSuperpixels {
-    pub superpixels: Vec<Superpixel>,
+impl SuperpixelSource {
+    pub fn folder(&self) -> &Path {
+        match self {
+            SuperpixelSource::Labels(folder) | SuperpixelSource::Photos(folder) => folder,
+        }
+    }
+
+    /// What one file of this source is called in messages.
+    fn noun(&self) -> &'static str {
+        match self {
+            SuperpixelSource::Labels(_) => "label image",
+            SuperpixelSource::Photos(_) => "photograph",
+        }
+    }
+}
+
+/// Why superpixels could not be had.
+#[derive(Debug, thiserror::Error)]
+pub enum ImageryError {
+    #[error(
+        "the reconstruction has no images, so {noun}s have nothing to refer to; give a COLMAP model, \
+         or leave them out: {folder}"
+    )]
+    NoImages { noun: &'static str, folder: PathBuf },
+    #[error("cannot read the folder of {noun}s, expected an existing folder ({reason}): {folder}")]
+    Folder { noun: &'static str, folder: PathBuf, reason: String },
+    #[error(
+        "no {noun} found for any of the {images} images of the reconstruction; files go by the image's name, \
+         the first is {example}; give the folder which that path starts from: {folder}"
+    )]
+    NothingFound { noun: &'static str, images: usize, example: String, folder: PathBuf },
+    #[error("cannot read {noun} ({reason}): {path}")]
+    Unreadable { noun: &'static str, reason: String, path: PathBuf },
+    #[error("cannot decode {noun} ({reason}); save it again as {expected}, or take it away: {path}")]
+    Undecodable { noun: &'static str, reason: String, expected: &'static str, path: PathBuf },
+    #[error(
+        "{noun} claims to be {width} x {height} pixels, which takes more than {limit_mib} MiB; \
+         if that is true, scale it down: {path}"
+    )]
+    TooLarge { noun: &'static str, width: u32, height: u32, limit_mib: u64, path: PathBuf },
+    #[error(
+        "label image is {found}, expected 8 or 16 bit grey whose values are superpixel ids (0: none); \
+         save it as grey PNG without colours, palette and alpha: {path}"
+    )]
+    NotGrey { found: String, path: PathBuf },
+}
+
+/// Something that was tolerated: how often, and the first case.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ImageryWarning {
+    /// Images of the reconstruction without a file; `example` is the first one's name.
+    Missing { noun: &'static str, count: usize, example: String },
+    /// JPEG files without their end; what is missing was decoded as plain grey.
+    Truncated { count: usize, example: PathBuf },
+    /// Observations of points outside their image, which are left out; `example` is the first one's image.
+    OutsideImage { count: usize, example: String },
+}
+
+impl std::fmt::Display for ImageryWarning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            ImageryWarning::Missing { noun, count, example } => {
+                write!(f, "{count} images have no {noun} and add no superpixels (first: {example})")
+            }
+            ImageryWarning::Truncated { count, example } => write!(
+                f,
+                "{count} photographs end before their end marker and lack a part of the picture; copy them again \
+                 (first: {})",
+                example.display()
+            ),
+            ImageryWarning::OutsideImage { count, example } => {
+                write!(f, "{count} observations lie outside their image and are left out (first: in {example})")
+            }
+        }
+    }
 }

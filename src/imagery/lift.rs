@@ -1,0 +1,233 @@
+//! Carries superpixels over to the points of a reconstruction.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::files::{find_labels, find_photo};
+use super::labels::read_labels;
+use super::photos::read_photo;
+use super::slic::{SlicOptions, slic};
+use super::{ImageryError, ImageryWarning, LabelMap, SuperpixelSource};
+use crate::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
+
+/// One superpixel of one image with the points whose observations fall on it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Superpixel {
+    pub image: ImageIndex,
+    pub label: u32,
+    /// Sorted, each once, at least one.
+    pub points: Vec<PointIndex>,
+}
+
+/// What the superpixels of all images hold.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LiftedSuperpixels {
+    /// By image, then by label; those without points are left out.
+    pub superpixels: Vec<Superpixel>,
+    pub warnings: Vec<ImageryWarning>,
+    /// Images whose file was read.
+    pub images_read: usize,
+    /// Images with observed points for which no file was found.
+    pub images_missing: usize,
+}
+
+/// Finds, for every superpixel of every image, the points that are seen on it. `progress` is told how many images are
+/// done, of how many. Images that see no point are not looked for.
+pub fn lift_superpixels(
+    reconstruction: &Reconstruction,
+    source: &SuperpixelSource,
+    options: &SlicOptions,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<LiftedSuperpixels, ImageryError> {
+    let files = find_files(reconstruction, source)?;
+    let done = AtomicUsize::new(0);
+    // Every image has its slot, so that neither the result nor the error that is told depends on the threads; a thread
+    // holds one picture at a time.
+    let lifted: Vec<Result<LiftedImage, ImageryError>> = files
+        .found
+        .par_iter()
+        .map(|(index, path)| {
+            let lifted = lift_image(*index, &reconstruction.images[index.0 as usize], path, source, options);
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, files.found.len());
+            lifted
+        })
+        .collect();
+    let lifted = lifted.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let warnings = gather_warnings(reconstruction, source, &files, &lifted);
+    Ok(LiftedSuperpixels {
+        images_read: files.found.len(),
+        images_missing: files.missing.len(),
+        superpixels: lifted.into_iter().flat_map(|image| image.superpixels).collect(),
+        warnings,
+    })
+}
+
+struct Files {
+    found: Vec<(ImageIndex, PathBuf)>,
+    missing: Vec<ImageIndex>,
+}
+
+fn find_files(reconstruction: &Reconstruction, source: &SuperpixelSource) -> Result<Files, ImageryError> {
+    let (noun, folder) = (source.noun(), source.folder());
+    if let Err(error) = std::fs::read_dir(folder) {
+        return Err(ImageryError::Folder { noun, folder: folder.to_path_buf(), reason: error.to_string() });
+    }
+    let mut files = Files { found: Vec::new(), missing: Vec::new() };
+    for (index, image) in reconstruction.images.iter().enumerate() {
+        if !image.observations.iter().any(|observation| observation.point.is_some()) {
+            continue;
+        }
+        let index = ImageIndex(index as u32);
+        let found = match source {
+            SuperpixelSource::Labels(folder) => find_labels(folder, &image.name),
+            SuperpixelSource::Photos(folder) => find_photo(folder, &image.name),
+        };
+        match found {
+            Some(path) => files.found.push((index, path)),
+            None => files.missing.push(index),
+        }
+    }
+    match files.missing.first() {
+        _ if !files.found.is_empty() => Ok(files),
+        Some(first) => Err(ImageryError::NothingFound {
+            noun,
+            images: files.missing.len(),
+            example: reconstruction.images[first.0 as usize].name.clone(),
+            folder: folder.to_path_buf(),
+        }),
+        None => Err(ImageryError::NoImages { noun, folder: folder.to_path_buf() }),
+    }
+}
+
+struct LiftedImage {
+    index: ImageIndex,
+    superpixels: Vec<Superpixel>,
+    truncated: Option<PathBuf>,
+    observations_outside: usize,
+}
+
+fn lift_image(
+    index: ImageIndex,
+    image: &Image,
+    path: &std::path::Path,
+    source: &SuperpixelSource,
+    options: &SlicOptions,
+) -> Result<LiftedImage, ImageryError> {
+    let (map, image_size, truncated) = match source {
+        SuperpixelSource::Labels(_) => {
+            let map = read_labels(path)?;
+            let size = (map.width, map.height);
+            (map, size, false)
+        }
+        SuperpixelSource::Photos(_) => {
+            let photo = read_photo(path)?;
+            (slic(&photo.pixels, options), photo.pixels.dimensions(), photo.truncated)
+        }
+    };
+    let (superpixels, observations_outside) = points_on_labels(index, image, &map, image_size);
+    let truncated = truncated.then(|| path.to_path_buf());
+    Ok(LiftedImage { index, superpixels, truncated, observations_outside })
+}
+
+/// The superpixels that hold points, by label, and the number of observations outside the image.
+fn points_on_labels(
+    index: ImageIndex,
+    image: &Image,
+    map: &LabelMap,
+    image_size: (u32, u32),
+) -> (Vec<Superpixel>, usize) {
+    let mut points_of_label: BTreeMap<u32, Vec<PointIndex>> = BTreeMap::new();
+    let mut outside = 0;
+    for observation in &image.observations {
+        let Some(point) = observation.point else { continue };
+        match map.label_at(observation.x_px, observation.y_px, image_size) {
+            None => outside += 1,
+            Some(0) => {}
+            Some(label) => points_of_label.entry(label).or_default().push(point),
+        }
+    }
+    let superpixels = points_of_label.into_iter().map(|(label, mut points)| {
+        points.sort_unstable();
+        points.dedup();
+        Superpixel { image: index, label, points }
+    });
+    (superpixels.collect(), outside)
+}
+
+fn gather_warnings(
+    reconstruction: &Reconstruction,
+    source: &SuperpixelSource,
+    files: &Files,
+    lifted: &[LiftedImage],
+) -> Vec<ImageryWarning> {
+    let name = |index: ImageIndex| reconstruction.images[index.0 as usize].name.clone();
+    let mut warnings = Vec::new();
+    if let Some(&first) = files.missing.first() {
+        let (noun, count) = (source.noun(), files.missing.len());
+        warnings.push(ImageryWarning::Missing { noun, count, example: name(first) });
+    }
+    let truncated: Vec<&PathBuf> = lifted.iter().filter_map(|image| image.truncated.as_ref()).collect();
+    if let Some(&first) = truncated.first() {
+        warnings.push(ImageryWarning::Truncated { count: truncated.len(), example: first.clone() });
+    }
+    if let Some(first) = lifted.iter().find(|image| image.observations_outside > 0) {
+        let count = lifted.iter().map(|image| image.observations_outside).sum();
+        warnings.push(ImageryWarning::OutsideImage { count, example: name(first.index) });
+    }
+    warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Rotation3, Vector3};
+    use crate::reconstruction::Observation;
+
+    fn image(name: &str, observations: &[(f64, f64, Option<u32>)]) -> Image {
+        Image {
+            name: name.to_owned(),
+            cam_from_sfm_rotation: Rotation3::identity(),
+            cam_from_sfm_translation: Vector3::zeros(),
+            observations: observations
+                .iter()
+                .map(|&(x_px, y_px, point)| Observation { x_px, y_px, point: point.map(PointIndex) })
+                .collect(),
+        }
+    }
+
+    fn labels_2x1(folder: &std::path::Path, name: &str, labels: [u16; 2]) {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        image::ImageBuffer::<image::Luma<u16>, _>::from_raw(2, 1, labels.to_vec()).unwrap().save(path).unwrap();
+    }
+
+    #[test]
+    fn points_are_gathered_by_image_and_label() {
+        let folder = tempfile::tempdir().unwrap();
+        labels_2x1(folder.path(), "a.png", [7, 40_000]);
+        labels_2x1(folder.path(), "sub/b.png", [0, 3]);
+        let seen_a = [(1.5, 0.5, Some(4)), (0.5, 0.5, Some(2)), (1.2, 0.1, Some(1)), (1.9, 0.9, Some(4))];
+        let seen_b = [(0.5, 0.5, Some(9)), (1.5, 0.5, Some(1)), (1.5, 0.5, None), (2.5, 0.5, Some(5))];
+        let images = vec![image("a.jpg", &seen_a), image("sub/b.jpg", &seen_b), image("c.jpg", &[(0.5, 0.5, Some(0))])];
+        let reconstruction = Reconstruction { images, ..Reconstruction::default() };
+        let source = SuperpixelSource::Labels(folder.path().to_path_buf());
+        let lifted = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap();
+        let flat: Vec<_> = lifted
+            .superpixels
+            .iter()
+            .map(|s| (s.image.0, s.label, s.points.iter().map(|p| p.0).collect::<Vec<_>>()))
+            .collect();
+        assert_eq!(flat, vec![(0, 7, vec![2]), (0, 40_000, vec![1, 4]), (1, 3, vec![1])]);
+        assert_eq!((lifted.images_read, lifted.images_missing), (2, 1));
+        assert_eq!(
+            lifted.warnings,
+            vec![
+                ImageryWarning::Missing { noun: "label image", count: 1, example: "c.jpg".to_owned() },
+                ImageryWarning::OutsideImage { count: 1, example: "sub/b.jpg".to_owned() },
+            ]
+        );
+    }
+}

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod city;
+pub mod export;
 pub mod format;
 pub mod geometry;
 pub mod imagery;

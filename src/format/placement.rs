@@ -1,0 +1,68 @@
+//! A similarity as the project's JSON files write it, and why a file holds none.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::geometry::{Matrix3, NotASimilarity, Similarity, Vector3};
+
+/// The longest report of a large city has some megabytes; a file beyond this is another file given by mistake.
+const LARGEST_FILE_BYTES: u64 = 64 << 20;
+
+/// Why a file does not say where a reconstruction stands. `what` is "start" or "alignment".
+#[derive(Debug, thiserror::Error)]
+pub enum PlacementError {
+    #[error("cannot read the {what}: {source}: {}", path.display())]
+    Io { what: &'static str, path: PathBuf, source: std::io::Error },
+    #[error("the {what} has {bytes} bytes; expected a JSON file of at most {LARGEST_FILE_BYTES}: {}", path.display())]
+    TooLarge { what: &'static str, path: PathBuf, bytes: u64 },
+    /// `source` names line, column and key.
+    #[error("not a valid {what}: {source}; expected {expected} (NaN and infinity are no JSON): {}", path.display())]
+    Json { what: &'static str, expected: &'static str, path: PathBuf, source: serde_json::Error },
+    #[error(
+        "the {what} is no similarity: {source}; expected x_city = scale * rotation * x_sfm + translation, \
+         rotation row by row: {}",
+        path.display()
+    )]
+    NotASimilarity { what: &'static str, path: PathBuf, source: NotASimilarity },
+    #[error("{key} of the start is {value}; expected a number that is not negative: {}", path.display())]
+    Sigma { path: PathBuf, key: &'static str, value: f64 },
+    #[error(
+        "the alignment has neither a transform nor a best_candidate, so nothing can be placed; write a transform \
+         into it or align again: {}",
+        path.display()
+    )]
+    Empty { path: PathBuf },
+}
+
+/// The three parts under their names, the rotation row by row.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) struct SimilarityRecord {
+    pub scale: f64,
+    pub rotation: [[f64; 3]; 3],
+    pub translation: [f64; 3],
+}
+
+impl SimilarityRecord {
+    pub fn check(&self, what: &'static str, path: &Path) -> Result<Similarity, PlacementError> {
+        let r = &self.rotation;
+        let rotation = Matrix3::from_fn(|row, column| r[row][column]);
+        Similarity::try_new(self.scale, rotation, Vector3::from(self.translation))
+            .map_err(|source| PlacementError::NotASimilarity { what, path: path.into(), source })
+    }
+}
+
+/// Reads a JSON file of a known form.
+pub(super) fn read_json<T: serde::de::DeserializeOwned>(
+    path: &Path,
+    what: &'static str,
+    expected: &'static str,
+) -> Result<T, PlacementError> {
+    let io = |source| PlacementError::Io { what, path: path.into(), source };
+    let bytes = std::fs::metadata(path).map_err(io)?.len();
+    if bytes > LARGEST_FILE_BYTES {
+        return Err(PlacementError::TooLarge { what, path: path.into(), bytes });
+    }
+    let text = std::fs::read(path).map_err(io)?;
+    serde_json::from_slice(&text).map_err(|source| PlacementError::Json { what, expected, path: path.into(), source })
+}

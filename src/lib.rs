@@ -4,14 +4,17 @@
 //! (`ARCHITECTURE.md` says why, `tests/layering.rs` holds the list).
 #![forbid(unsafe_code)]
 
-pub mod city;
-pub mod export;
-pub mod format;
 pub mod geometry;
-pub mod imagery;
+pub mod format;
+pub mod city;
 pub mod reconstruction;
+pub mod imagery;
+pub mod robust;
+pub mod planes;
+pub mod correspondence;
 pub mod verdict;
+pub mod export;
 
 mod align;
 
-pub use align::{AlignOptions, Progress, Up, align};
+pub use align::{AlignOptions, Finalist, Progress, Scene, Up, align, search};

@@ -35,8 +35,17 @@ fn shared_models_load_with_their_counts() {
     ];
     for (name, objects, faces, triangles) in table {
         let model = read(&shared.join(name));
-        println!("{name} {} {} {} {} {:?}", model.objects.len(), model.facets.len(), model.triangles.len(), model.origin, model.sources);
-        for warning in &model.warnings { println!("   {warning}"); }
+        println!(
+            "{name} {} {} {} {} {:?}",
+            model.objects.len(),
+            model.facets.len(),
+            model.triangles.len(),
+            model.origin,
+            model.sources
+        );
+        for warning in &model.warnings {
+            println!("   {warning}");
+        }
         println!("   {objects} {faces} {triangles} area {}", model.facets.iter().map(|f| f.area).sum::<f64>());
     }
 }

@@ -5,10 +5,12 @@
 //! *Sfm*: one reconstruction's own frame, of arbitrary scale. *Cam*: x right, y down, z forward.
 
 mod plane;
+mod rays;
 mod similarity;
 mod start;
 
 pub use plane::Plane;
+pub use rays::{RayCaster, Sight};
 pub use similarity::{NotASimilarity, Similarity};
 pub use start::Start;
 

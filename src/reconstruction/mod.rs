@@ -42,3 +42,18 @@ pub struct Observation {
     pub y_px: f64,
     pub point: Option<PointIndex>,
 }
+
+impl Image {
+    /// Where the camera stood; sfm frame.
+    pub fn center(&self) -> Point3<f64> {
+        Point3::from(-(self.cam_from_sfm_rotation.inverse() * self.cam_from_sfm_translation))
+    }
+}
+
+impl Reconstruction {
+    /// The observations of a point: (image, index of the observation in the image).
+    pub fn track(&self, p: PointIndex) -> &[(ImageIndex, u32)] {
+        let starts = self.track_starts.get(p.0 as usize..p.0 as usize + 2);
+        starts.map_or(&[], |s| &self.track_elements[s[0] as usize..s[1] as usize])
+    }
+}

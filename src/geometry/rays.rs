@@ -1,0 +1,141 @@
+//! What a straight line of sight meets first.
+
+use bvh::aabb::{Aabb, Bounded, IntersectsAabb};
+use bvh::bounding_hierarchy::BHShape;
+use bvh::bvh::Bvh;
+use nalgebra::{Point3, Vector3};
+
+/// Triangles in a tree of boxes.
+pub struct RayCaster {
+    shapes: Vec<Shape>,
+    tree: Bvh<f64, 3>,
+}
+
+/// Where a line of sight ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    pub distance: f64,
+    /// Index of the triangle in the order in which they were given.
+    pub triangle: u32,
+}
+
+struct Shape {
+    corner: Point3<f64>,
+    edges: [Vector3<f64>; 2],
+    triangle: u32,
+    node: usize,
+}
+
+impl RayCaster {
+    pub fn new(triangles: impl Iterator<Item = [Point3<f64>; 3]>) -> RayCaster {
+        let shape = |(i, [a, b, c]): (usize, [Point3<f64>; 3])| Shape {
+            corner: a,
+            edges: [b - a, c - a],
+            triangle: i as u32,
+            node: 0,
+        };
+        let mut shapes: Vec<Shape> = triangles.enumerate().map(shape).collect();
+        let tree = Bvh::build(&mut shapes);
+        RayCaster { shapes, tree }
+    }
+
+    /// The first triangle between `from` (exclusive) and `from + direction * reach`; `direction` has unit length. Of equally
+    /// distant triangles the one with the lowest index.
+    pub fn first_hit(&self, from: &Point3<f64>, direction: &Vector3<f64>, reach: f64) -> Option<Sight> {
+        if self.shapes.is_empty() {
+            return None;
+        }
+        let line = Line { from: *from, inverse: direction.map(f64::recip), reach };
+        let mut best: Option<Sight> = None;
+        for shape in self.tree.traverse_iterator(&line, &self.shapes) {
+            let Some(distance) = shape.meets(from, direction) else { continue };
+            let nearer = best.is_none_or(|b| (distance, shape.triangle) < (b.distance, b.triangle));
+            if distance <= reach && nearer {
+                best = Some(Sight { distance, triangle: shape.triangle });
+            }
+        }
+        best
+    }
+}
+
+impl Shape {
+    /// Distance along the ray to the triangle (Moeller and Trumbore 1997); the surface itself at distance 0 does not count.
+    fn meets(&self, from: &Point3<f64>, direction: &Vector3<f64>) -> Option<f64> {
+        let [e1, e2] = &self.edges;
+        let p = direction.cross(e2);
+        let det = e1.dot(&p);
+        if det == 0.0 {
+            return None;
+        }
+        let to = from - self.corner;
+        let u = to.dot(&p) / det;
+        let q = to.cross(e1);
+        let v = direction.dot(&q) / det;
+        let distance = e2.dot(&q) / det;
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
+    }
+}
+
+/// A ray that ends.
+struct Line {
+    from: Point3<f64>,
+    inverse: Vector3<f64>,
+    reach: f64,
+}
+
+impl IntersectsAabb<f64, 3> for Line {
+    fn intersects_aabb(&self, aabb: &Aabb<f64, 3>) -> bool {
+        let (mut enter, mut leave) = (0.0f64, self.reach);
+        for k in 0..3 {
+            let a = (aabb.min[k] - self.from[k]) * self.inverse[k];
+            let b = (aabb.max[k] - self.from[k]) * self.inverse[k];
+            // A ray inside a flat box gives 0 * infinity: `min` and `max` pass over the NaN, which counts as a meeting.
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        enter <= leave
+    }
+}
+
+impl Bounded<f64, 3> for Shape {
+    fn aabb(&self) -> Aabb<f64, 3> {
+        let (a, b, c) = (self.corner, self.corner + self.edges[0], self.corner + self.edges[1]);
+        Aabb::with_bounds(a.inf(&b).inf(&c), a.sup(&b).sup(&c))
+    }
+}
+
+impl BHShape<f64, 3> for Shape {
+    fn set_bh_node_index(&mut self, index: usize) {
+        self.node = index;
+    }
+
+    fn bh_node_index(&self) -> usize {
+        self.node
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wall(x: f64) -> [Point3<f64>; 3] {
+        [Point3::new(x, -1.0, -1.0), Point3::new(x, 3.0, -1.0), Point3::new(x, -1.0, 3.0)]
+    }
+
+    #[test]
+    fn meets_the_nearest_of_several() {
+        let rays = RayCaster::new([wall(5.0), wall(2.0), wall(9.0)].into_iter());
+        let hit = rays.first_hit(&Point3::origin(), &Vector3::x(), 100.0).unwrap();
+        assert_eq!((hit.triangle, hit.distance), (1, 2.0));
+        assert_eq!(rays.first_hit(&Point3::new(2.0, 0.0, 0.0), &Vector3::x(), 100.0).unwrap().triangle, 0);
+    }
+
+    #[test]
+    fn ends_at_its_reach_and_passes_beside() {
+        let rays = RayCaster::new([wall(5.0)].into_iter());
+        assert_eq!(rays.first_hit(&Point3::origin(), &Vector3::x(), 4.9), None);
+        assert_eq!(rays.first_hit(&Point3::origin(), &-Vector3::x(), 100.0), None);
+        assert_eq!(rays.first_hit(&Point3::new(0.0, 2.9, 2.9), &Vector3::x(), 100.0), None);
+        assert_eq!(RayCaster::new(std::iter::empty()).first_hit(&Point3::origin(), &Vector3::x(), 1.0), None);
+    }
+}

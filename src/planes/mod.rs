@@ -1,0 +1,15 @@
+//! Planes on both sides of the problem: [`CityPlanes`] merged from facets, [`Patch`]es of points, and which way is up.
+
+mod city_planes;
+mod cloud;
+mod exposure;
+mod fit;
+mod patches;
+mod upright;
+
+pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
+pub use cloud::{LocalSurface, local_surfaces};
+pub use exposure::exposed_triangles;
+pub use fit::{FittedPlane, fit_plane, fit_plane_robustly};
+pub use patches::{Patch, PatchOptions, Patches, RejectedGroup, patches};
+pub use upright::{Upright, estimate_up};

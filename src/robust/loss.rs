@@ -1,0 +1,30 @@
+//! Bounded losses: what lies far off must not pull.
+
+/// Tukey's biweight (Beaton and Tukey 1974): the weight of a residual, 1 at zero, 0 from `width` on; `residual_sq` and `width`
+/// in the same unit (squared). `w = (1 - r^2 / c^2)^2`.
+#[inline]
+pub fn tukey_weight(residual_sq: f64, width: f64) -> f64 {
+    let rest = 1.0 - residual_sq / (width * width);
+    if rest > 0.0 { rest * rest } else { 0.0 }
+}
+
+/// The share of a vote that a residual leaves: `1 - r^2 / c^2`, at least 0 (truncated square).
+#[inline]
+pub fn vote(residual_sq: f64, width: f64) -> f64 {
+    (1.0 - residual_sq / (width * width)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn falls_to_zero_at_the_width() {
+        assert_eq!(tukey_weight(0.0, 2.0), 1.0);
+        assert_eq!(tukey_weight(1.0, 2.0), 0.5625);
+        assert_eq!(tukey_weight(4.0, 2.0), 0.0);
+        assert_eq!(tukey_weight(9.0, 2.0), 0.0);
+        assert_eq!(vote(1.0, 2.0), 0.75);
+        assert_eq!(vote(5.0, 2.0), 0.0);
+    }
+}

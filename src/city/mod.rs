@@ -1,8 +1,23 @@
 //! The city model: polygons with their objects, in metres, z up, about a local origin.
+//!
+//! [`read_city`] takes OBJ, glTF and GLB files into one [`CityModel`]. What such files usually have wrong is tolerated
+//! and counted in [`CityModel::warnings`]; what leaves no honest model is a [`CityError`].
+
+mod build;
+mod facet;
+mod origin;
+mod read;
+mod source;
+mod triangulate;
+mod warning;
 
 use std::ops::Range;
+use std::path::PathBuf;
 
 use crate::geometry::{Plane, Point3, Vector3};
+
+pub use read::{CityError, CityOptions, CityUp, read_city};
+pub use warning::{CityDefect, CityPlace, CityWarning};
 
 /// Index into [`CityModel::facets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -24,6 +39,10 @@ pub struct CityModel {
     pub triangles: Vec<[u32; 3]>,
     /// Names of buildings (groups, objects, nodes).
     pub objects: Vec<String>,
+    /// One per file, in the order in which they were given: the city, then terrain.
+    pub sources: Vec<CitySource>,
+    /// What the files had wrong and was tolerated, one entry a kind.
+    pub warnings: Vec<CityWarning>,
 }
 
 /// One polygon of the model, or one triangle where the file has only triangles.
@@ -38,4 +57,49 @@ pub struct Facet {
     pub object: ObjectId,
     /// Range in [`CityModel::triangles`].
     pub triangles: Range<u32>,
+}
+
+/// What one file gave to the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CitySource {
+    pub path: PathBuf,
+    pub role: CityRole,
+    /// Indices into [`CityModel::facets`].
+    pub facets: Range<u32>,
+    /// Indices into [`CityModel::objects`].
+    pub objects: Range<u32>,
+    /// How finely the file's coordinates are written, metres.
+    pub precision_m: f64,
+}
+
+/// What a file is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CityRole {
+    City,
+    /// A surface that is open by its nature.
+    Terrain,
+}
+
+impl CityModel {
+    /// The smallest box around all vertices, local coordinates; `None` without any.
+    pub fn bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
+        let first = *self.vertices.first()?;
+        Some(self.vertices.iter().fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex))))
+    }
+
+    /// The name of an object, or an empty text for an id of another model.
+    pub fn object_name(&self, object: ObjectId) -> &str {
+        self.objects.get(object.0 as usize).map_or("", String::as_str)
+    }
+
+    /// All facets with their ids, in order.
+    pub fn facets_with_ids(&self) -> impl Iterator<Item = (FacetId, &Facet)> {
+        (0..).map(FacetId).zip(&self.facets)
+    }
+
+    /// The corners of a facet's triangles.
+    pub fn triangles_of<'a>(&'a self, facet: &Facet) -> impl Iterator<Item = [Point3<f64>; 3]> + 'a {
+        let range = facet.triangles.start as usize..facet.triangles.end as usize;
+        self.triangles[range].iter().map(|corners| corners.map(|corner| self.vertices[corner as usize]))
+    }
 }

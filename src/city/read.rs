@@ -1,0 +1,61 @@
+//! Files to city model: which format it is, what went wrong where.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::build::build;
+use super::source::Source;
+use super::{CityModel, CityRole};
+use crate::format::obj::{self, ObjError};
+
+/// How to take city files.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CityOptions {
+    /// Which axis of OBJ files points up; glTF is y up by its standard.
+    pub up: CityUp,
+}
+
+/// The axis that points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CityUp {
+    #[default]
+    Z,
+    /// (x, y, z) becomes (x, -z, y).
+    Y,
+}
+
+/// Why files are no city.
+#[derive(Debug, thiserror::Error)]
+pub enum CityError {
+    #[error("cannot read the file: {reason}; expected an OBJ, glTF or GLB file ({})", path.display())]
+    Unreadable { path: PathBuf, reason: io::Error },
+    #[error("{error} ({})", obj_place(path, error))]
+    Obj { path: PathBuf, error: ObjError },
+    #[error("the city has no faces: {found}; expected polygons (`f` lines, or triangles of a mesh) ({})", path.display())]
+    NoFaces { path: PathBuf, found: String },
+    #[error("more than 4 billion vertices or triangles; split the model ({})", path.display())]
+    TooLarge { path: PathBuf },
+}
+
+fn obj_place(path: &Path, error: &ObjError) -> String {
+    let object = error.object.as_ref().map_or(String::new(), |name| format!("object {name}, "));
+    match error.line {
+        0 => format!("{object}{}", path.display()),
+        line => format!("{object}{}:{line}", path.display()),
+    }
+}
+
+/// Reads CITY and further meshes (terrain) into one model with one common origin.
+pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Result<CityModel, CityError> {
+    let mut sources = vec![read_source(city, CityRole::City, options)?];
+    for path in terrain {
+        sources.push(read_source(path, CityRole::Terrain, options)?);
+    }
+    build(sources)
+}
+
+fn read_source(path: &Path, role: CityRole, options: &CityOptions) -> Result<Source, CityError> {
+    let bytes = std::fs::read(path).map_err(|reason| CityError::Unreadable { path: path.to_owned(), reason })?;
+    let file = obj::read_obj(&bytes).map_err(|error| CityError::Obj { path: path.to_owned(), error })?;
+    Ok(Source::from_obj(path, role, options.up, file))
+}

@@ -1,0 +1,159 @@
+//! One file's polygons, brought to z up but not yet shifted, joined or judged.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use super::warning::{CityDefect, CityPlace, CityWarning};
+use super::{CityRole, CityUp};
+use crate::format::obj::{ObjFile, ObjObject, ObjOddities};
+use crate::geometry::Point3;
+
+/// Vertices looked at to find the precision; more would tell nothing new.
+const PRECISION_SAMPLES: usize = 10_000;
+
+/// Decimals beyond which nobody measures: micrometres.
+const FINEST_DECIMALS: i32 = 6;
+
+/// How far a scaled coordinate may be from a whole number: f64 holds ten-metre-thousand kilometres to 1e-9 m, which at
+/// micrometres is a thousandth of a digit.
+const MULTIPLE_TOLERANCE: f64 = 1e-2;
+
+/// Share of coordinates with more digits than the rest (computed ones) that does not make a file finer.
+const ODD_SHARE: f64 = 0.01;
+
+/// Polygons of one file: file coordinates, metres, z up.
+pub(super) struct Source {
+    pub path: PathBuf,
+    pub role: CityRole,
+    pub positions: Vec<Point3<f64>>,
+    /// Position indices of all faces, one face after the other.
+    pub corners: Vec<u32>,
+    /// End of each face in `corners`.
+    pub face_ends: Vec<u32>,
+    /// Line of each face; empty where the format has no lines.
+    pub face_lines: Vec<u32>,
+    /// Index into `objects` of each face.
+    pub face_objects: Vec<u32>,
+    pub objects: Vec<String>,
+    /// Whether faces of this format share vertices, so that two at one place are a defect.
+    pub shares_vertices: bool,
+    /// How finely coordinates are written, metres.
+    pub precision_m: f64,
+    /// What the reader of the format passed over.
+    pub warnings: Vec<CityWarning>,
+}
+
+impl Source {
+    pub fn face_count(&self) -> usize {
+        self.face_ends.len()
+    }
+
+    pub fn corners_of(&self, face: usize) -> &[u32] {
+        let start = if face == 0 { 0 } else { self.face_ends[face - 1] };
+        &self.corners[start as usize..self.face_ends[face] as usize]
+    }
+
+    /// The face that holds the corner at this index.
+    pub fn face_of_corner(&self, at: usize) -> usize {
+        self.face_ends.partition_point(|&end| end as usize <= at)
+    }
+
+    pub fn place_of(&self, face: usize) -> CityPlace {
+        CityPlace {
+            path: self.path.clone(),
+            line: self.face_lines.get(face).copied(),
+            object: self.objects[self.face_objects[face] as usize].clone(),
+        }
+    }
+
+    pub fn from_obj(path: &Path, role: CityRole, up: CityUp, file: ObjFile) -> Source {
+        let turned = |[x, y, z]: [f64; 3]| match up {
+            CityUp::Z => Point3::new(x, y, z),
+            CityUp::Y => from_y_up([x, y, z]),
+        };
+        let (objects, face_objects) = objects_of(path, &file.objects, file.face_ends.len());
+        let positions: Vec<Point3<f64>> = file.positions.into_iter().map(turned).collect();
+        Source {
+            path: path.to_owned(),
+            role,
+            precision_m: written_precision(&positions),
+            positions,
+            corners: file.corners,
+            face_ends: file.face_ends,
+            face_lines: file.face_lines,
+            face_objects,
+            objects,
+            shares_vertices: true,
+            warnings: obj_warnings(path, &file.oddities),
+        }
+    }
+}
+
+fn obj_warnings(path: &Path, oddities: &ObjOddities) -> Vec<CityWarning> {
+    let kinds = [
+        (CityDefect::UnknownLines, oddities.unknown_lines),
+        (CityDefect::FreeForms, oddities.free_forms),
+        (CityDefect::TooFewCorners, oddities.short_faces),
+    ];
+    let met = kinds.into_iter().filter(|(_, tally)| tally.count > 0);
+    met.map(|(defect, tally)| {
+        let example = CityPlace { path: path.to_owned(), line: Some(tally.first_line), object: String::new() };
+        CityWarning { defect, count: tally.count, example }
+    })
+    .collect()
+}
+
+/// The power of ten that nearly all coordinates are multiples of: what the writer rounded to.
+fn written_precision(positions: &[Point3<f64>]) -> f64 {
+    let step = positions.len().div_ceil(PRECISION_SAMPLES).max(1);
+    let sample = || positions.iter().step_by(step).flat_map(|position| position.iter().copied());
+    let is_multiple = |value: f64, per_metre: f64| {
+        let scaled = value * per_metre;
+        (scaled - scaled.round()).abs() < MULTIPLE_TOLERANCE
+    };
+    (0..FINEST_DECIMALS)
+        .map(|decimals| 10_f64.powi(decimals))
+        .find(|&per_metre| {
+            let odd = sample().filter(|&value| !is_multiple(value, per_metre)).count();
+            odd as f64 <= ODD_SHARE * sample().count() as f64
+        })
+        .unwrap_or(10_f64.powi(FINEST_DECIMALS))
+        .recip()
+}
+
+/// The turn that glTF's axes need, and OBJ files that are y up.
+pub(super) fn from_y_up([x, y, z]: [f64; 3]) -> Point3<f64> {
+    Point3::new(x, -z, y)
+}
+
+/// Which lines name buildings. With several `o` lines that have faces, each begins a building, and groups are its parts;
+/// with at most one (a whole scene), groups are buildings, and a group that comes back under its name is the same.
+/// What has no name is called after the file.
+fn objects_of(path: &Path, objects: &[ObjObject], face_count: usize) -> (Vec<String>, Vec<u32>) {
+    let nameless = path.file_stem().map_or_else(|| "city".into(), |stem| stem.to_string_lossy().into_owned());
+    let mut names = Vec::new();
+    let mut face_objects = vec![0; face_count];
+    if let [only] = objects
+        && only.groups.iter().any(|group| group.name != only.groups[0].name)
+    {
+        let mut ids = HashMap::new();
+        for group in &only.groups {
+            let name = group.name.as_ref().unwrap_or(&nameless);
+            let id = *ids.entry(name).or_insert_with(|| {
+                names.push(name.clone());
+                names.len() as u32 - 1
+            });
+            face_objects[group.faces.clone()].fill(id);
+        }
+        return (names, face_objects);
+    }
+    for object in objects {
+        for group in &object.groups {
+            face_objects[group.faces.clone()].fill(names.len() as u32);
+        }
+        let lone_group = objects.len() == 1;
+        let group_name = object.groups[0].name.as_ref().filter(|_| lone_group);
+        names.push(object.name.as_ref().or(group_name).unwrap_or(&nameless).clone());
+    }
+    (names, face_objects)
+}

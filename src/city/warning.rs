@@ -1,0 +1,118 @@
+//! What a city file has wrong and the model tolerates.
+
+use std::fmt;
+use std::mem::discriminant;
+use std::path::PathBuf;
+
+/// A kind of defect that was tolerated: how often it was met, and where first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CityWarning {
+    pub defect: CityDefect,
+    /// Of what the defect is about: vertices, faces, lines, objects.
+    pub count: u64,
+    pub example: CityPlace,
+}
+
+/// Where an oddity was first met.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CityPlace {
+    pub path: PathBuf,
+    /// Counted from 1; `None` in files without lines.
+    pub line: Option<u32>,
+    /// Empty where it concerns none.
+    pub object: String,
+}
+
+/// What was wrong, and what was done about it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CityDefect {
+    /// Lines that begin with a word OBJ does not know; passed over.
+    UnknownLines,
+    /// Curves and surfaces without polygons; passed over.
+    FreeForms,
+    /// Points and lines of a glTF mesh; passed over.
+    NoSurface,
+    /// Faces of fewer than three corners; left out.
+    TooFewCorners,
+    /// Faces without area; left out.
+    ZeroArea,
+    /// Vertices at exactly the place of an earlier one of the same file; joined with it.
+    DuplicateVertices,
+    /// Polygons whose corners lie off their plane by more than the tolerance; split into triangles.
+    NonPlanar { worst_m: f64 },
+    /// Polygons that cross or overlap themselves; what lies inside an odd number of times was kept.
+    SelfIntersecting,
+    /// Polygons that cross themselves beyond repair; left out.
+    Tangled,
+}
+
+impl CityDefect {
+    /// Takes in the figures of the same kind of defect elsewhere.
+    fn merge(&mut self, other: &CityDefect) {
+        if let (CityDefect::NonPlanar { worst_m }, CityDefect::NonPlanar { worst_m: other_m }) = (self, other) {
+            *worst_m = worst_m.max(*other_m);
+        }
+    }
+}
+
+/// Warnings in the making: one entry a kind, in the order in which the kinds were first met.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Warnings(Vec<CityWarning>);
+
+impl Warnings {
+    /// Counts a defect; asks for the place only when the kind is new.
+    pub fn add(&mut self, defect: CityDefect, count: u64, place: impl FnOnce() -> CityPlace) {
+        match self.0.iter_mut().find(|warning| discriminant(&warning.defect) == discriminant(&defect)) {
+            _ if count == 0 => {}
+            Some(warning) => {
+                warning.count += count;
+                warning.defect.merge(&defect);
+            }
+            None => self.0.push(CityWarning { defect, count, example: place() }),
+        }
+    }
+
+    pub fn into_list(self) -> Vec<CityWarning> {
+        self.0
+    }
+}
+
+impl fmt::Display for CityPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.object.is_empty() {
+            write!(f, "object {}, ", self.object)?;
+        }
+        let name = self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy();
+        match self.line {
+            Some(line) => write!(f, "{name}:{line}"),
+            None => write!(f, "{name}"),
+        }
+    }
+}
+
+impl fmt::Display for CityWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (one, many) = match self.defect {
+            CityDefect::UnknownLines => ("line begins with an unknown word", "lines begin with an unknown word"),
+            CityDefect::FreeForms => ("curve or surface has no polygons", "curves or surfaces have no polygons"),
+            CityDefect::NoSurface => ("primitive is points or lines", "primitives are points or lines"),
+            CityDefect::TooFewCorners => ("face has less than 3 corners", "faces have less than 3 corners"),
+            CityDefect::ZeroArea => ("face has no area", "faces have no area"),
+            CityDefect::DuplicateVertices => ("vertex repeats an earlier one", "vertices repeat earlier ones"),
+            CityDefect::NonPlanar { .. } => ("polygon is not planar", "polygons are not planar"),
+            CityDefect::SelfIntersecting => {
+                ("polygon crosses or overlaps itself", "polygons cross or overlap themselves")
+            }
+            CityDefect::Tangled => ("polygon is tangled", "polygons are tangled"),
+        };
+        write!(f, "{} {}", self.count, if self.count == 1 { one } else { many })?;
+        match self.defect {
+            CityDefect::UnknownLines | CityDefect::FreeForms | CityDefect::NoSurface => write!(f, ", passed over")?,
+            CityDefect::TooFewCorners | CityDefect::ZeroArea | CityDefect::Tangled => write!(f, ", left out")?,
+            CityDefect::DuplicateVertices => write!(f, ", joined")?,
+            CityDefect::NonPlanar { worst_m } => write!(f, " (worst by {worst_m:.3} m), split into triangles")?,
+            CityDefect::SelfIntersecting => write!(f, ", kept by the even-odd rule")?,
+        }
+        write!(f, "; first: {}", self.example)
+    }
+}

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::warning::{CityDefect, CityPlace, CityWarning};
 use super::{CityRole, CityUp};
-use crate::format::obj::{ObjFile, ObjGroup, ObjOddities};
+use crate::format::obj::{ObjFile, ObjObject, ObjOddities};
 use crate::geometry::Point3;
 
 /// Vertices looked at to find the precision; more would tell nothing new.
@@ -71,7 +71,7 @@ impl Source {
             CityUp::Z => Point3::new(x, y, z),
             CityUp::Y => from_y_up([x, y, z]),
         };
-        let (objects, face_objects) = objects_of(path, &file.groups, file.face_ends.len());
+        let (objects, face_objects) = objects_of(path, &file.objects, file.face_ends.len());
         let positions: Vec<Point3<f64>> = file.positions.into_iter().map(turned).collect();
         Source {
             path: path.to_owned(),
@@ -126,28 +126,34 @@ pub(super) fn from_y_up([x, y, z]: [f64; 3]) -> Point3<f64> {
     Point3::new(x, -z, y)
 }
 
-/// Which lines name buildings. With several `o` that have faces, objects are buildings and groups their parts; with at
-/// most one (a whole scene), groups are buildings. Runs of the same name are one building. What has no name is called
-/// after the file.
-fn objects_of(path: &Path, groups: &[ObjGroup], face_count: usize) -> (Vec<String>, Vec<u32>) {
-    let several_objects = groups.windows(2).any(|pair| pair[0].object != pair[1].object);
-    let several_groups = groups.windows(2).any(|pair| pair[0].group != pair[1].group);
-    let name_of = |group: &ObjGroup| match (several_objects, several_groups) {
-        (false, true) => group.group.clone(),
-        (true, _) => group.object.clone(),
-        (false, false) => group.object.clone().or(group.group.clone()),
-    };
+/// Which lines name buildings. With several `o` lines that have faces, each begins a building, and groups are its parts;
+/// with at most one (a whole scene), groups are buildings, and a group that comes back under its name is the same.
+/// What has no name is called after the file.
+fn objects_of(path: &Path, objects: &[ObjObject], face_count: usize) -> (Vec<String>, Vec<u32>) {
     let nameless = path.file_stem().map_or_else(|| "city".into(), |stem| stem.to_string_lossy().into_owned());
-    let mut ids = HashMap::new();
-    let mut objects = Vec::new();
+    let mut names = Vec::new();
     let mut face_objects = vec![0; face_count];
-    for group in groups {
-        let name = name_of(group).unwrap_or_else(|| nameless.clone());
-        let id = *ids.entry(name).or_insert_with_key(|name| {
-            objects.push(name.clone());
-            objects.len() as u32 - 1
-        });
-        face_objects[group.faces.clone()].fill(id);
+    if let [only] = objects
+        && only.groups.iter().any(|group| group.name != only.groups[0].name)
+    {
+        let mut ids = HashMap::new();
+        for group in &only.groups {
+            let name = group.name.as_ref().unwrap_or(&nameless);
+            let id = *ids.entry(name).or_insert_with(|| {
+                names.push(name.clone());
+                names.len() as u32 - 1
+            });
+            face_objects[group.faces.clone()].fill(id);
+        }
+        return (names, face_objects);
     }
-    (objects, face_objects)
+    for object in objects {
+        for group in &object.groups {
+            face_objects[group.faces.clone()].fill(names.len() as u32);
+        }
+        let lone_group = objects.len() == 1;
+        let group_name = object.groups[0].name.as_ref().filter(|_| lone_group);
+        names.push(object.name.as_ref().or(group_name).unwrap_or(&nameless).clone());
+    }
+    (names, face_objects)
 }

@@ -16,8 +16,8 @@ pub use write::write_obj;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjFile {
     pub positions: Vec<[f64; 3]>,
-    /// Runs of faces under one `o` and one `g` line, in file order; the same names may come back.
-    pub groups: Vec<ObjGroup>,
+    /// What stands under each `o` line that has faces, in file order.
+    pub objects: Vec<ObjObject>,
     /// Position indices of all faces, one face after the other.
     pub corners: Vec<u32>,
     /// End of each face in `corners`; a face starts where the one before it ends.
@@ -27,13 +27,20 @@ pub struct ObjFile {
     pub oddities: ObjOddities,
 }
 
-/// Faces that stand under one `o` and one `g` line.
+/// The faces under one `o` line, or before the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjObject {
+    /// `None` before the first `o` line, or where it has no name.
+    pub name: Option<String>,
+    /// In file order; the same name may come back.
+    pub groups: Vec<ObjGroup>,
+}
+
+/// A run of faces under one `g` line, or before the first of the object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjGroup {
-    /// `None` before the first `o` line, or where it has no name.
-    pub object: Option<String>,
     /// `None` before the first `g` line, or where it has no name.
-    pub group: Option<String>,
+    pub name: Option<String>,
     /// Indices into `face_ends`.
     pub faces: Range<usize>,
 }
@@ -124,6 +131,7 @@ pub fn read_obj(text: &[u8]) -> Result<ObjFile, ObjError> {
 fn take_faces(file: &mut ObjFile, data: obj::ObjData) -> Result<(), ObjError> {
     file.face_ends.reserve(file.face_lines.len());
     for object in data.objects {
+        let mut groups = Vec::new();
         for group in object.groups {
             let first = file.face_ends.len();
             for polygon in group.polys {
@@ -133,8 +141,11 @@ fn take_faces(file: &mut ObjFile, data: obj::ObjData) -> Result<(), ObjError> {
             }
             let faces = first..file.face_ends.len();
             if !faces.is_empty() {
-                file.groups.push(ObjGroup { object: named(&object.name), group: named(&group.name), faces });
+                groups.push(ObjGroup { name: named(&group.name), faces });
             }
+        }
+        if !groups.is_empty() {
+            file.objects.push(ObjObject { name: named(&object.name), groups });
         }
     }
     if file.face_ends.len() != file.face_lines.len() {
@@ -150,8 +161,8 @@ fn check_indices(file: &ObjFile) -> Result<(), ObjError> {
         return Ok(());
     };
     let face = file.face_ends.partition_point(|&end| end as usize <= at);
-    let group = file.groups.iter().find(|group| group.faces.contains(&face));
-    let object = group.and_then(|group| group.group.clone().or(group.object.clone()));
+    let object = file.objects.iter().find(|object| object.groups.iter().any(|group| group.faces.contains(&face)));
+    let object = object.and_then(|object| object.name.clone());
     let problem = ObjProblem::IndexOutOfRange { index: i64::from(file.corners[at]) + 1, vertices };
     Err(ObjError { line: file.face_lines[face], object, problem })
 }

@@ -13,17 +13,13 @@ pub fn write_obj(out: &mut impl Write, file: &ObjFile) -> io::Result<()> {
         let [x, y, z] = position.map(decimal);
         writeln!(out, "v {x} {y} {z}")?;
     }
-    let mut names = (None, None);
-    for group in &file.groups {
-        if group.object.is_some() && group.object != names.0 {
-            writeln!(out, "o {}", one_line(group.object.as_deref()))?;
-        }
-        if group.group.is_some() && group.group != names.1 {
-            writeln!(out, "g {}", one_line(group.group.as_deref()))?;
-        }
-        names = (group.object.clone(), group.group.clone());
-        for face in group.faces.clone() {
-            write_face(out, file, face)?;
+    for object in &file.objects {
+        write_name(out, 'o', object.name.as_deref())?;
+        for group in &object.groups {
+            write_name(out, 'g', group.name.as_deref())?;
+            for face in group.faces.clone() {
+                write_face(out, file, face)?;
+            }
         }
     }
     Ok(())
@@ -38,14 +34,17 @@ fn write_face(out: &mut impl Write, file: &ObjFile, face: usize) -> io::Result<(
     writeln!(out)
 }
 
-/// The shortest of the number's own text and the text rounded to nanometres, without trailing zeros.
+/// A line break in a name would begin a new line of the file.
+fn write_name(out: &mut impl Write, keyword: char, name: Option<&str>) -> io::Result<()> {
+    match name {
+        Some(name) => writeln!(out, "{keyword} {}", name.split_whitespace().collect::<Vec<_>>().join(" ")),
+        None => Ok(()),
+    }
+}
+
+/// Rounded to nanometres, without trailing zeros.
 fn decimal(value: f64) -> String {
     let rounded = format!("{value:.DECIMALS$}");
     let short = rounded.trim_end_matches('0').trim_end_matches('.');
     if short == "-0" { "0".to_owned() } else { short.to_owned() }
-}
-
-/// A line break in a name would begin a new line of the file.
-fn one_line(name: Option<&str>) -> String {
-    name.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ")
 }

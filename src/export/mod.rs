@@ -1,6 +1,8 @@
 //! Results written for people and for other programs. Writing never estimates and never judges; the shift of large
 //! coordinates is undone here.
 
+mod glb;
+pub mod gltf;
 mod output;
 mod report;
 

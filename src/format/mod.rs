@@ -1,3 +1,10 @@
 //! Raw records as the specifications of the file formats write them, both directions.
 
+mod alignment;
 pub mod obj;
+mod placement;
+mod start;
+
+pub use alignment::{StoredAlignment, read_alignment};
+pub use placement::PlacementError;
+pub use start::read_start;

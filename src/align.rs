@@ -2,7 +2,7 @@
 
 use crate::city::CityModel;
 use crate::correspondence::{
-    ErrorModel, FacetField, Pairing, PoseSearch, Refined, Scorer, Votes, largest_shift, refine,
+    ErrorModel, FacetField, Pairing, PoseSearch, Refined, Scorer, Votes, largest_shift, refine, slide,
 };
 use crate::geometry::{Point3, Similarity, Start, Vector3};
 use crate::imagery::LiftedSuperpixels;
@@ -111,7 +111,7 @@ pub fn search(scene: &Scene, seed: u64, progress: Progress<'_>) -> Vec<Finalist>
     let seen = |p: PlaneId| scene.seen[p.0 as usize];
     let pairing = Pairing::new(&scene.votes, scene.city, &scene.planes, &scene.start, seen);
     let problem = PoseSearch { pairing, scorer: &scorer, panel: scene.votes.panel(200), gate_m: COARSE_GATE_M };
-    let options = RansacOptions { seed, keep: 100, fewest_samples: 8192, most_samples: 65_536, enough_hits: 40 };
+    let options = RansacOptions { seed, keep: 60, fewest_samples: 2048, most_samples: 65_536, enough_hits: 10 };
     let (ranked, samples) = ransac(&problem, &options, |n| progress("search", n, 65_536));
     eprintln!(
         "samples {samples} kept {} best {:?}",
@@ -119,33 +119,49 @@ pub fn search(scene: &Scene, seed: u64, progress: Progress<'_>) -> Vec<Finalist>
         ranked.iter().take(5).map(|r| (r.score, r.hits)).collect::<Vec<_>>()
     );
     let errors = ErrorModel { point_sigma_m: scene.votes.noise_m.max(0.01), plane_sigma_m: 0.05 };
+    let votes = &scene.votes;
+    let stages = [
+        Stage { panel: votes.panel(400), gates_m: &[1.5, 1.5, 1.2, 1.0, 0.8], score_gate_m: 0.7, keep: 16 },
+        Stage { panel: votes.panel(1500), gates_m: &[0.8, 0.7, 0.6, 0.5, 0.5], score_gate_m: 0.4, keep: 6 },
+        Stage {
+            panel: (0..votes.probes.len() as u32).collect(),
+            gates_m: &[0.5, 0.4, 0.35, 0.3, 0.3, 0.3],
+            score_gate_m: 0.3,
+            keep: 6,
+        },
+    ];
     let mut pool: Vec<Finalist> = ranked
         .iter()
         .map(|r| {
-            let panel = scene.votes.panel(600);
-            let refined = refine(&scorer, &scene.planes, &panel, &r.pose, &[1.5, 1.5, 1.2, 1.0, 0.8], &errors);
-            let p = &refined.city_from_level;
-            let score = scorer.panel_share(&panel, p, 0.7) - scorer.prior_cost(p);
-            Finalist { refined, score, hits: r.hits }
+            let refined = refine(&scorer, &scene.planes, &[], &r.pose, &[], &errors);
+            Finalist { refined, score: r.score, hits: r.hits }
         })
         .collect();
-    pool = distinct(pool, scene.votes.radius_m, 20);
-    let panel = scene.votes.panel(3000);
-    for f in &mut pool {
-        f.refined =
-            refine(&scorer, &scene.planes, &panel, &f.refined.city_from_level, &[0.8, 0.7, 0.6, 0.5, 0.5], &errors);
-        let p = &f.refined.city_from_level;
-        f.score = scorer.panel_share(&panel, p, 0.4) - scorer.prior_cost(p);
+    for stage in &stages {
+        for f in &mut pool {
+            let run = |pose: &Similarity| refine(&scorer, &scene.planes, &stage.panel, pose, stage.gates_m, &errors);
+            let first = run(&f.refined.city_from_level);
+            let spectrum = first.equations.spectrum();
+            let slid =
+                slide(&scorer, &stage.panel, &first.chart, &spectrum, &first.city_from_level, stage.score_gate_m);
+            f.refined = if slid == first.city_from_level { first } else { run(&slid) };
+            let p = &f.refined.city_from_level;
+            f.score = if stage.panel.len() == votes.probes.len() {
+                scorer.share(p, stage.score_gate_m)
+            } else {
+                scorer.panel_share(&stage.panel, p, stage.score_gate_m)
+            } - scorer.prior_cost(p);
+        }
+        pool = distinct(pool, votes.radius_m, stage.keep);
     }
-    pool = distinct(pool, scene.votes.radius_m, 6);
-    let all: Vec<u32> = (0..scene.votes.probes.len() as u32).collect();
-    for f in &mut pool {
-        f.refined =
-            refine(&scorer, &scene.planes, &all, &f.refined.city_from_level, &[0.5, 0.4, 0.35, 0.3, 0.3, 0.3], &errors);
-        let p = &f.refined.city_from_level;
-        f.score = scorer.share(p, 0.3) - scorer.prior_cost(p);
-    }
-    distinct(pool, scene.votes.radius_m, 6)
+    pool
+}
+
+struct Stage {
+    panel: Vec<u32>,
+    gates_m: &'static [f64],
+    score_gate_m: f64,
+    keep: usize,
 }
 
 fn distinct(mut pool: Vec<Finalist>, radius_m: f64, keep: usize) -> Vec<Finalist> {

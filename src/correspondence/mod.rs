@@ -5,6 +5,7 @@ mod pairing;
 mod refine;
 mod scoring;
 mod search;
+mod slide;
 mod votes;
 
 pub use field::{FacetField, FieldTriangle, Hit, Probe};
@@ -12,4 +13,5 @@ pub use pairing::{Pair, Pairing, Sample};
 pub use refine::{ErrorModel, Refined, refine};
 pub use scoring::{Mover, NORMAL_GATE_DEG, Scorer};
 pub use search::{PoseSearch, largest_shift};
+pub use slide::slide;
 pub use votes::{LevelPatch, Votes};

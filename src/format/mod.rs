@@ -1,8 +1,10 @@
 //! Raw records as the specifications of the file formats write them, both directions.
 
 mod alignment;
+pub mod colmap;
 pub mod obj;
 mod placement;
+pub mod ply;
 mod start;
 
 pub use alignment::{StoredAlignment, read_alignment};

@@ -4,11 +4,13 @@
 //! `city_from_cam = city_from_sfm * sfm_from_cam` cancels by reading. *City*: metres, z up, about a local origin.
 //! *Sfm*: one reconstruction's own frame, of arbitrary scale. *Cam*: x right, y down, z forward.
 
+mod camera;
 mod plane;
 mod rays;
 mod similarity;
 mod start;
 
+pub use camera::{Camera, CameraModel};
 pub use plane::Plane;
 pub use rays::{RayCaster, Sight};
 pub use similarity::{NotASimilarity, Similarity};

@@ -195,6 +195,7 @@ mod tests {
                 .iter()
                 .map(|&(x_px, y_px, point)| Observation { x_px, y_px, point: point.map(PointIndex) })
                 .collect(),
+            ..Image::default()
         }
     }
 

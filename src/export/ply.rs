@@ -1,0 +1,40 @@
+//! The points of a reconstruction as a PLY cloud.
+
+use std::io::{BufWriter, Result, Write};
+use std::path::Path;
+
+use super::ExportError;
+use super::file::write_file;
+use crate::reconstruction::Reconstruction;
+
+/// Writes the points, in the frame in which they stand: binary little-endian, `double` coordinates, normals (`double`)
+/// and colours (`uchar`) where there are any.
+pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), ExportError> {
+    let count = r.points.len();
+    let (has_normals, has_colors) = (r.normals.len() == count, r.colors.len() == count);
+    write_file(path, |out| {
+        write!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {count}\n")?;
+        declare(out, "double", &["x", "y", "z"])?;
+        if has_normals {
+            declare(out, "double", &["nx", "ny", "nz"])?;
+        }
+        if has_colors {
+            declare(out, "uchar", &["red", "green", "blue"])?;
+        }
+        out.write_all(b"end_header\n")?;
+        for (i, point) in r.points.iter().enumerate() {
+            point.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))?;
+            if has_normals {
+                r.normals[i].iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))?;
+            }
+            if has_colors {
+                out.write_all(&r.colors[i])?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn declare(out: &mut BufWriter<std::fs::File>, kind: &str, names: &[&str]) -> Result<()> {
+    names.iter().try_for_each(|name| writeln!(out, "property {kind} {name}"))
+}

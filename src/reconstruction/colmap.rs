@@ -1,0 +1,284 @@
+//! From COLMAP's records to a reconstruction: ids become indices, and what the records say together is checked.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::frames::FramePoses;
+use super::ids::{IdFault, IdIndex};
+use super::transform::rotation_of;
+use super::*;
+use crate::format::colmap::{CameraRecord, ImageRecord, Model, NO_POINT, ObservationRecord, PointRecords, PoseRecord};
+use crate::geometry::CameraModel;
+
+/// How far a quaternion's length may be from one without a word: text of few digits.
+const QUATERNION_TOLERANCE: f64 = 1e-3;
+
+/// Track elements checked at once; any number gives the same result.
+const ELEMENTS_AT_ONCE: usize = 1 << 16;
+
+/// Gathers faults and warnings of one model.
+pub(super) struct Checker {
+    folder: PathBuf,
+    extension: &'static str,
+    warnings: Vec<ReconstructionWarning>,
+}
+
+impl Checker {
+    pub(super) fn fault(
+        &self,
+        stem: &str,
+        object: impl Into<String>,
+        expected: &str,
+        got: impl std::fmt::Display,
+    ) -> ReconstructionError {
+        let path = self.folder.join(format!("{stem}.{}", self.extension));
+        ReconstructionError::Inconsistent {
+            path,
+            object: object.into(),
+            expected: expected.into(),
+            got: got.to_string(),
+        }
+    }
+
+    fn warn(&mut self, kind: WarningKind, count: usize, example: impl FnOnce() -> String) {
+        if count == 0 {
+            return;
+        }
+        match self.warnings.iter_mut().find(|w| w.kind == kind) {
+            Some(warning) => warning.count += count,
+            None => self.warnings.push(ReconstructionWarning { kind, count, example: example() }),
+        }
+    }
+
+    pub(super) fn index(
+        &self,
+        stem: &str,
+        of: &str,
+        ids: impl ExactSizeIterator<Item = u64> + Clone,
+    ) -> Result<IdIndex, ReconstructionError> {
+        IdIndex::new(ids).map_err(|fault| match fault {
+            IdFault::Twice(id) => self.fault(stem, format!("{of} {id}"), "ids that differ", "this id twice"),
+            IdFault::TooMany => self.fault(stem, format!("{of}s"), "fewer than 2^32", "more"),
+        })
+    }
+
+    pub(super) fn check_pose(
+        &self,
+        stem: &str,
+        object: impl Fn() -> String,
+        pose: &PoseRecord,
+    ) -> Result<(), ReconstructionError> {
+        if rotation_of(&pose.quaternion_wxyz).is_none() {
+            let got = format!("{:?}", pose.quaternion_wxyz);
+            return Err(self.fault(stem, object(), "a finite quaternion other than zero", got));
+        }
+        if !pose.translation.iter().all(|v| v.is_finite()) {
+            return Err(self.fault(stem, object(), "a finite translation", format!("{:?}", pose.translation)));
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn reconstruction(folder: &Path, model: Model) -> Result<Reconstruction, ReconstructionError> {
+    let extension = model.encoding.extension();
+    let mut check = Checker { folder: folder.into(), extension, warnings: Vec::new() };
+    if model.points.ids.is_empty() {
+        return Err(ReconstructionError::NoPoints { path: folder.into() });
+    }
+    let frame_poses = FramePoses::new(&check, model.rigs.as_deref(), model.frames.as_deref())?;
+    let camera_index = check.index("cameras", "camera", model.cameras.iter().map(|c| c.id.into()))?;
+    let image_index = check.index("images", "image", model.images.iter().map(|i| i.id.into()))?;
+    let point_index = check.index("points3D", "point", model.points.ids.iter().copied())?;
+    let camera_ids = model.cameras.iter().map(|c| c.id).collect();
+    let cameras = model.cameras.into_iter().map(|record| camera(&check, record)).collect::<Result<_, _>>()?;
+    let images = images(&mut check, model.images, &camera_index, &point_index, &frame_poses)?;
+    let track_elements = tracks(&mut check, &model.points, &image_index, &images)?;
+    check_points(&mut check, &model.points)?;
+    let PointRecords { ids, positions, colors, errors, track_starts, .. } = model.points;
+    Ok(Reconstruction {
+        cameras,
+        camera_ids,
+        images,
+        points: positions.into_iter().map(Point3::from).collect(),
+        point_ids: ids,
+        point_errors_px: errors,
+        colors,
+        normals: Vec::new(),
+        track_starts,
+        track_elements,
+        colmap: Some(ColmapParts { encoding: model.encoding, rigs: model.rigs, frames: model.frames }),
+        warnings: check.warnings,
+    })
+}
+
+fn camera(check: &Checker, record: CameraRecord) -> Result<Camera, ReconstructionError> {
+    let object = || format!("camera {}", record.id);
+    let model = CameraModel::from_colmap_id(record.model.id)
+        .ok_or_else(|| check.fault("cameras", object(), "a known model", record.model.name))?;
+    if record.width == 0 || record.height == 0 {
+        let got = format!("{} x {} pixels", record.width, record.height);
+        return Err(check.fault("cameras", object(), "a picture of at least one pixel", got));
+    }
+    if !record.params.iter().all(|v| v.is_finite()) {
+        return Err(check.fault("cameras", object(), "finite parameters", format!("{:?}", record.params)));
+    }
+    let camera = Camera { model, width_px: record.width, height_px: record.height, params: record.params };
+    match camera.focal_px() {
+        Some(focal_px) if focal_px > 0.0 => Ok(camera),
+        _ => Err(check.fault("cameras", object(), "a focal length above zero", format!("{:?}", camera.params))),
+    }
+}
+
+fn images(
+    check: &mut Checker,
+    records: Vec<ImageRecord>,
+    cameras: &IdIndex,
+    points: &IdIndex,
+    frame_poses: &FramePoses,
+) -> Result<Vec<Image>, ReconstructionError> {
+    let read: Vec<_> = records
+        .into_par_iter()
+        .map(|mut record| {
+            let observations = observations(std::mem::take(&mut record.observations), points);
+            (record, observations)
+        })
+        .collect();
+    let mut images = Vec::with_capacity(read.len());
+    for (record, observations) in read {
+        let mut image = image(check, record, cameras, frame_poses)?;
+        let (observations, missing) = observations.map_err(|keypoint| {
+            let object = format!("keypoint {keypoint} of image {}", image.id);
+            check.fault("images", object, "a finite position", "a number that is not finite")
+        })?;
+        check.warn(WarningKind::ObservationsOfMissingPoints, missing, || format!("in image {}", image.id));
+        check.warn(WarningKind::ImagesWithoutObservations, usize::from(observations.is_empty()), || {
+            format!("image {}", image.id)
+        });
+        image.observations = observations;
+        images.push(image);
+    }
+    Ok(images)
+}
+
+/// The observations with indices for ids, and how many name a point that is not there; or the number of the first
+/// that is not finite.
+fn observations(records: Vec<ObservationRecord>, points: &IdIndex) -> Result<(Vec<Observation>, usize), usize> {
+    if let Some(keypoint) = records.iter().position(|o| !(o.x.is_finite() && o.y.is_finite())) {
+        return Err(keypoint);
+    }
+    let mut missing = 0;
+    // Both types have the same size, so that collecting takes no further memory.
+    let observations = records.into_iter().map(|ObservationRecord { x, y, point_id }| {
+        let point = if point_id == NO_POINT { None } else { points.get(point_id).map(PointIndex) };
+        missing += usize::from(point.is_none() && point_id != NO_POINT);
+        Observation { x_px: x, y_px: y, point }
+    });
+    Ok((observations.collect(), missing))
+}
+
+/// An image without its observations.
+fn image(
+    check: &mut Checker,
+    record: ImageRecord,
+    cameras: &IdIndex,
+    frame_poses: &FramePoses,
+) -> Result<Image, ReconstructionError> {
+    let object = || format!("image {}", record.id);
+    let camera = cameras.get(record.camera_id.into()).map(CameraIndex).ok_or_else(|| {
+        check.fault("images", object(), "a camera of the model", format!("camera {}", record.camera_id))
+    })?;
+    check.check_pose("images", object, &record.cam_from_world)?;
+    let length = record.cam_from_world.quaternion_wxyz.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let is_off = (length - 1.0).abs() > QUATERNION_TOLERANCE;
+    check.warn(WarningKind::UnnormalizedQuaternions, usize::from(is_off), object);
+    let name = match String::from_utf8(record.name) {
+        Ok(name) => name,
+        Err(error) => {
+            check.warn(WarningKind::NamesNotUtf8, 1, object);
+            error.into_bytes().into_iter().map(char::from).collect()
+        }
+    };
+    let mut image = Image { id: record.id, camera, name, ..Image::default() };
+    image.set_pose(&record.cam_from_world);
+    if let Some(pose) = frame_poses.contradicting(&record.cam_from_world, record.id, record.camera_id) {
+        check.warn(WarningKind::PosesThatFramesContradict, 1, || format!("image {}", image.id));
+        image.set_pose(&pose);
+    }
+    Ok(image)
+}
+
+fn check_points(check: &mut Checker, points: &PointRecords) -> Result<(), ReconstructionError> {
+    let is_bad = |i: &usize| !points.positions[*i].iter().all(|v| v.is_finite()) || points.errors[*i].is_nan();
+    if let Some(bad) = (0..points.ids.len()).find(is_bad) {
+        let got = format!("{:?} with error {}", points.positions[bad], points.errors[bad]);
+        let object = format!("point {}", points.ids[bad]);
+        return Err(check.fault("points3D", object, "a finite position and an error that is a number", got));
+    }
+    let is_alone = |ends: &&[u32]| ends[0] == ends[1];
+    if let Some(first) = points.track_starts.windows(2).position(|ends| is_alone(&ends)) {
+        let count = points.track_starts.windows(2).filter(is_alone).count();
+        check.warn(WarningKind::PointsWithoutTrack, count, || format!("point {}", points.ids[first]));
+    }
+    Ok(())
+}
+
+/// What a piece of the track elements became: the elements, and how many the images contradict with the first one; or
+/// the first that names what is not there.
+type CheckedElements = Result<(Vec<(ImageIndex, u32)>, usize, Option<usize>), usize>;
+
+fn tracks(
+    check: &mut Checker,
+    points: &PointRecords,
+    image_index: &IdIndex,
+    images: &[Image],
+) -> Result<Vec<(ImageIndex, u32)>, ReconstructionError> {
+    let pieces: Vec<_> = points
+        .track_elements
+        .par_chunks(ELEMENTS_AT_ONCE)
+        .enumerate()
+        .map(|(piece, _)| checked_elements(piece * ELEMENTS_AT_ONCE, points, image_index, images))
+        .collect();
+    let mut elements = Vec::with_capacity(points.track_elements.len());
+    let point_of = |element: usize| points.track_starts.partition_point(|start| *start as usize <= element) - 1;
+    for piece in pieces {
+        let (piece, contradicted, first) = piece.map_err(|element| {
+            let (image_id, keypoint) = points.track_elements[element];
+            let object = format!("track of point {}", points.ids[point_of(element)]);
+            match image_index.get(image_id.into()) {
+                None => check.fault("points3D", object, "images of the model", format!("image {image_id}")),
+                Some(image) => {
+                    let count = images[image as usize].observations.len();
+                    let expected = format!("one of the {count} keypoints of image {image_id}");
+                    check.fault("points3D", object, &expected, format!("keypoint {keypoint}"))
+                }
+            }
+        })?;
+        elements.extend(piece);
+        check.warn(WarningKind::TracksThatImagesContradict, contradicted, || {
+            first.map(|element| format!("in the track of point {}", points.ids[point_of(element)])).unwrap_or_default()
+        });
+    }
+    Ok(elements)
+}
+
+fn checked_elements(start: usize, points: &PointRecords, image_index: &IdIndex, images: &[Image]) -> CheckedElements {
+    let end = (start + ELEMENTS_AT_ONCE).min(points.track_elements.len());
+    let mut point = points.track_starts.partition_point(|first| *first as usize <= start) - 1;
+    let mut elements = Vec::with_capacity(end - start);
+    let (mut contradicted, mut first) = (0, None);
+    for element in start..end {
+        while points.track_starts[point + 1] as usize <= element {
+            point += 1;
+        }
+        let (image_id, keypoint) = points.track_elements[element];
+        let image = image_index.get(image_id.into()).ok_or(element)?;
+        let observation = images[image as usize].observations.get(keypoint as usize).ok_or(element)?;
+        if observation.point != Some(PointIndex(point as u32)) {
+            contradicted += 1;
+            first.get_or_insert(element);
+        }
+        elements.push((ImageIndex(image), keypoint));
+    }
+    Ok((elements, contradicted, first))
+}

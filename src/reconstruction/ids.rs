@@ -1,0 +1,54 @@
+//! From the ids of a file to indices.
+
+use std::collections::HashMap;
+
+/// A table by id is taken where it needs at most this many entries per record; ids are mostly near to consecutive.
+const ENTRIES_PER_RECORD: usize = 8;
+
+/// Marks an id that no record has.
+const NONE: u32 = u32::MAX;
+
+/// Which record has an id.
+pub(super) enum IdIndex {
+    Table(Vec<u32>),
+    Map(HashMap<u64, u32>),
+}
+
+/// What keeps ids from being indexed.
+pub(super) enum IdFault {
+    Twice(u64),
+    TooMany,
+}
+
+impl IdIndex {
+    pub(super) fn new(ids: impl ExactSizeIterator<Item = u64> + Clone) -> Result<IdIndex, IdFault> {
+        let count = ids.len();
+        if count >= NONE as usize {
+            return Err(IdFault::TooMany);
+        }
+        let table_length = ids.clone().max().and_then(|max| usize::try_from(max).ok()?.checked_add(1)).unwrap_or(0);
+        let in_table = table_length / ENTRIES_PER_RECORD <= count;
+        let mut index = if in_table {
+            IdIndex::Table(vec![NONE; table_length])
+        } else {
+            IdIndex::Map(HashMap::with_capacity(count))
+        };
+        for (record, id) in ids.enumerate() {
+            let before = match &mut index {
+                IdIndex::Table(table) => std::mem::replace(&mut table[id as usize], record as u32),
+                IdIndex::Map(map) => map.insert(id, record as u32).unwrap_or(NONE),
+            };
+            if before != NONE {
+                return Err(IdFault::Twice(id));
+            }
+        }
+        Ok(index)
+    }
+
+    pub(super) fn get(&self, id: u64) -> Option<u32> {
+        match self {
+            IdIndex::Table(table) => table.get(usize::try_from(id).ok()?).copied().filter(|record| *record != NONE),
+            IdIndex::Map(map) => map.get(&id).copied(),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Moves a reconstruction into another frame, and turns poses between their forms.
+
+use nalgebra::{Quaternion, UnitQuaternion};
+
+use super::{Image, Reconstruction};
+use crate::format::colmap::{PoseRecord, RigRecord};
+use crate::geometry::{Rotation3, Similarity, Vector3};
+
+impl Reconstruction {
+    /// The same reconstruction in the frame `city`: points, normals, poses of images and frames; the distances within
+    /// rigs are scaled. Keypoints, tracks and calibrations stay.
+    pub fn transformed(&self, city_from_sfm: &Similarity) -> Reconstruction {
+        let mut moved = self.clone();
+        for point in &mut moved.points {
+            *point = city_from_sfm.apply(point);
+        }
+        for normal in &mut moved.normals {
+            *normal = city_from_sfm.rotation * *normal;
+        }
+        for image in &mut moved.images {
+            image.set_pose(&pose_in_city(&image.pose(), city_from_sfm));
+        }
+        if let Some(colmap) = &mut moved.colmap {
+            for frame in colmap.frames.iter_mut().flatten() {
+                frame.rig_from_world = pose_in_city(&frame.rig_from_world, city_from_sfm);
+            }
+            colmap.rigs.iter_mut().flatten().for_each(|rig| scale_rig(rig, city_from_sfm.scale));
+        }
+        moved
+    }
+}
+
+impl Image {
+    /// The pose as files hold it; the quaternion that was read, to the bit, while the rotation is the one that was
+    /// read.
+    pub fn pose(&self) -> PoseRecord {
+        let kept = self.quaternion_wxyz.filter(|q| rotation_of(q) == Some(self.cam_from_sfm_rotation));
+        let quaternion_wxyz = kept.unwrap_or_else(|| quaternion_of(&self.cam_from_sfm_rotation));
+        PoseRecord { quaternion_wxyz, translation: self.cam_from_sfm_translation.into() }
+    }
+
+    /// Sets rotation and translation; a quaternion without direction leaves the rotation as it is.
+    pub fn set_pose(&mut self, pose: &PoseRecord) {
+        if let Some(rotation) = rotation_of(&pose.quaternion_wxyz) {
+            self.cam_from_sfm_rotation = rotation;
+            self.quaternion_wxyz = Some(pose.quaternion_wxyz);
+        }
+        self.cam_from_sfm_translation = pose.translation.into();
+    }
+}
+
+/// Lengths of quaternions below this have no direction that could be told from rounding.
+const LEAST_QUATERNION: f64 = 1e-9;
+
+/// The rotation of a quaternion of any length; `None` where it is zero or not finite.
+pub(super) fn rotation_of([w, x, y, z]: &[f64; 4]) -> Option<Rotation3<f64>> {
+    let unit = UnitQuaternion::try_new(Quaternion::new(*w, *x, *y, *z), LEAST_QUATERNION)?;
+    unit.coords.iter().all(|v| v.is_finite()).then(|| unit.to_rotation_matrix())
+}
+
+fn quaternion_of(rotation: &Rotation3<f64>) -> [f64; 4] {
+    let q = UnitQuaternion::from_rotation_matrix(rotation);
+    [q.w, q.i, q.j, q.k]
+}
+
+/// With `x_city = s R x_sfm + t`, a camera's frame grows by s too, so that its axes stay orthonormal:
+/// `x_cam' = R_cam R^T x_city + (s t_cam - R_cam R^T t)`.
+fn pose_in_city(cam_from_sfm: &PoseRecord, city_from_sfm: &Similarity) -> PoseRecord {
+    let [w, x, y, z] = cam_from_sfm.quaternion_wxyz;
+    let cam_from_sfm_rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+    let city_from_sfm_rotation = UnitQuaternion::from_rotation_matrix(&city_from_sfm.rotation);
+    let q = cam_from_sfm_rotation * city_from_sfm_rotation.inverse();
+    let translation = city_from_sfm.scale * Vector3::from(cam_from_sfm.translation) - q * city_from_sfm.translation;
+    PoseRecord { quaternion_wxyz: [q.w, q.i, q.j, q.k], translation: translation.into() }
+}
+
+fn scale_rig(rig: &mut RigRecord, scale: f64) {
+    for pose in rig.others.iter_mut().filter_map(|(_, pose)| pose.as_mut()) {
+        pose.translation = pose.translation.map(|v| scale * v);
+    }
+}

@@ -1,7 +1,8 @@
 //! One polygon of a file to planar facets.
 
-use super::triangulate::triangulate;
+use super::triangulate::{halves, triangulate};
 use super::warning::CityDefect;
+use super::{Facet, ObjectId};
 use crate::geometry::{Plane, Point3, Vector3};
 
 /// Metres. A polygon narrower than this has no direction that its digits could hold: files are written to a tenth of a
@@ -18,82 +19,134 @@ const FLAT_LIMIT_M: f64 = 0.05;
 /// Corners rounded to the file's digits may stand off by this many of the last digit.
 const FLAT_DIGITS: f64 = 3.0;
 
-/// A facet that has no place in the model yet. Indices from the number of vertices on mean new vertices.
-pub(super) struct Draft {
-    pub outline: Vec<u32>,
-    pub plane: Plane,
-    pub area: f64,
-    pub triangles: Vec<[u32; 3]>,
-}
-
-/// What became of a polygon.
-pub(super) struct Shaped {
-    pub drafts: Vec<Draft>,
-    pub defects: Vec<CityDefect>,
-}
-
-impl Shaped {
-    fn left_out(defect: CityDefect) -> Shaped {
-        Shaped { drafts: Vec::new(), defects: vec![defect] }
-    }
-}
-
-/// Makes facets of a ring of vertices; `new_vertices` takes the points where it crosses itself.
-pub(super) fn shape(
-    ring: Vec<u32>,
-    vertices: &[Point3<f64>],
+/// Makes facets of one run of faces, as if no other run were there.
+pub(super) struct Shaper<'a> {
+    vertices: &'a [Point3<f64>],
     precision_m: f64,
-    new_vertices: &mut Vec<Point3<f64>>,
-) -> Shaped {
-    let corners: Vec<Point3<f64>> = ring.iter().map(|&vertex| vertices[vertex as usize]).collect();
-    let centroid = centroid(&corners);
-    let area_vector = newell(&corners, &centroid);
-    let extent = 2.0 * corners.iter().map(|corner| (corner - centroid).norm()).fold(0.0, f64::max);
-    if corners.len() < 3 || 2.0 * area_vector.norm() <= ZERO_WIDTH_M * extent {
-        return Shaped::left_out(CityDefect::ZeroArea);
-    }
-    let Some(plane) = Plane::through(&centroid, &area_vector) else {
-        return Shaped::left_out(CityDefect::ZeroArea);
-    };
-    let [right, up] = axes(&plane.normal);
-    let flat = |corner: &Point3<f64>| [right.dot(&(corner - centroid)), up.dot(&(corner - centroid))];
-    let Some(made) = triangulate(&corners.iter().map(flat).collect::<Vec<_>>()) else {
-        return Shaped::left_out(CityDefect::Tangled);
-    };
+    /// With triangles counted from the run's first, and vertices from `vertices.len()` on in `new_vertices`.
+    pub facets: Vec<Facet>,
+    pub triangles: Vec<[u32; 3]>,
+    /// Where polygons cross themselves.
+    pub new_vertices: Vec<Point3<f64>>,
+    /// Each with its face.
+    pub defects: Vec<(u32, CityDefect)>,
+    corners: Vec<Point3<f64>>,
+    flat: Vec<[f64; 2]>,
+}
 
-    let first_new = vertices.len() + new_vertices.len();
-    new_vertices.extend(made.crossings.iter().map(|[x, y]| centroid + right * *x + up * *y));
-    let vertex_of = |at: usize| ring.get(at).copied().unwrap_or((first_new + at - ring.len()) as u32);
-    let triangles: Vec<[u32; 3]> = made.triangles.iter().map(|triangle| triangle.map(vertex_of)).collect();
-    let position_of = |vertex: u32| {
-        let vertex = vertex as usize;
-        vertices.get(vertex).copied().unwrap_or_else(|| new_vertices[vertex - vertices.len()])
-    };
-    let off_m = corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
-    let mut defects: Vec<CityDefect> = made.overlaps.then_some(CityDefect::SelfIntersecting).into_iter().collect();
-    if off_m > flat_tolerance(extent, precision_m) {
-        defects.push(CityDefect::NonPlanar { worst_m: off_m });
-        let drafts = triangles.iter().filter_map(|&triangle| triangle_draft(triangle, triangle.map(position_of)));
-        return Shaped { drafts: drafts.collect(), defects };
+/// A polygon as the facet will have it, if it is planar.
+struct Polygon {
+    face: u32,
+    ring: Vec<u32>,
+    plane: Plane,
+    centroid: Point3<f64>,
+}
+
+impl<'a> Shaper<'a> {
+    pub fn new(vertices: &'a [Point3<f64>], precision_m: f64, faces: usize) -> Shaper<'a> {
+        Shaper {
+            vertices,
+            precision_m,
+            facets: Vec::with_capacity(faces),
+            triangles: Vec::with_capacity(2 * faces),
+            new_vertices: Vec::new(),
+            defects: Vec::new(),
+            corners: Vec::new(),
+            flat: Vec::new(),
+        }
     }
-    let area = triangles.iter().map(|triangle| area_of(triangle.map(position_of))).sum();
-    Shaped { drafts: vec![Draft { outline: ring, plane, area, triangles }], defects }
+
+    /// Adds the facets of a ring of vertices, or the reason why there are none.
+    pub fn shape(&mut self, face: u32, object: ObjectId, ring: Vec<u32>) {
+        self.corners.clear();
+        self.corners.extend(ring.iter().map(|&vertex| self.vertices[vertex as usize]));
+        let centroid = centroid(&self.corners);
+        let area_vector = newell(&self.corners, &centroid);
+        let reach = self.corners.iter().map(|corner| (corner - centroid).norm_squared()).fold(0.0, f64::max);
+        let extent = 2.0 * reach.sqrt();
+        let is_wide = ring.len() >= 3 && 2.0 * area_vector.norm() > ZERO_WIDTH_M * extent;
+        let Some(plane) = Plane::through(&centroid, &area_vector).filter(|_| is_wide) else {
+            return self.defects.push((face, CityDefect::ZeroArea));
+        };
+        let polygon = Polygon { face, ring, plane, centroid };
+        let first = self.triangles.len();
+        if !self.cut(&polygon) {
+            return self.defects.push((face, CityDefect::Tangled));
+        }
+        let off_m = self.corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
+        if off_m > flat_tolerance(extent, self.precision_m) {
+            self.defects.push((face, CityDefect::NonPlanar { worst_m: off_m }));
+            self.add_split(first, object);
+        } else {
+            let area = self.triangles[first..].iter().map(|triangle| area_of(self.positions(triangle))).sum();
+            let triangles = first as u32..self.triangles.len() as u32;
+            self.facets.push(Facet { outline: polygon.ring, plane, area, object, triangles });
+        }
+    }
+
+    /// Adds the polygon's triangles; false where it is too tangled.
+    fn cut(&mut self, polygon: &Polygon) -> bool {
+        let ring = &polygon.ring;
+        if let [a, b, c] = ring[..] {
+            self.triangles.push([a, b, c]);
+            return true;
+        }
+        if let [a, b, c, d] = self.corners[..]
+            && let Some(halves) =
+                halves(|corners| doubled_area(corners.map(|at| [a, b, c, d][at]), &polygon.plane.normal))
+        {
+            self.triangles.extend(halves.map(|half| half.map(|at| ring[at])));
+            return true;
+        }
+        let [right, up] = axes(&polygon.plane.normal);
+        let centroid = polygon.centroid;
+        self.flat.clear();
+        self.flat
+            .extend(self.corners.iter().map(|corner| [right.dot(&(corner - centroid)), up.dot(&(corner - centroid))]));
+        let Some(made) = triangulate(&self.flat) else { return false };
+        let first_new = self.vertices.len() + self.new_vertices.len();
+        self.new_vertices.extend(made.crossings.iter().map(|[x, y]| centroid + right * *x + up * *y));
+        let vertex_of = |at: usize| ring.get(at).copied().unwrap_or((first_new + at - ring.len()) as u32);
+        self.triangles.extend(made.triangles.iter().map(|triangle| triangle.map(vertex_of)));
+        self.defects.extend(made.overlaps.then_some((polygon.face, CityDefect::SelfIntersecting)));
+        true
+    }
+
+    /// Makes a facet of every triangle from `first` on that has a plane, and forgets the others.
+    fn add_split(&mut self, first: usize, object: ObjectId) {
+        let triangles = self.triangles.split_off(first);
+        for triangle in triangles {
+            let corners = self.positions(&triangle);
+            let centroid = centroid(&corners);
+            let area_vector = newell(&corners, &centroid);
+            let longest = (0..3).map(|at| (corners[at] - corners[(at + 1) % 3]).norm()).fold(0.0, f64::max);
+            let is_wide = 2.0 * area_vector.norm() > ZERO_WIDTH_M * longest;
+            if let Some(plane) = Plane::through(&centroid, &area_vector).filter(|_| is_wide) {
+                let start = self.triangles.len() as u32;
+                self.triangles.push(triangle);
+                let outline = triangle.to_vec();
+                self.facets.push(Facet {
+                    outline,
+                    plane,
+                    area: area_vector.norm(),
+                    object,
+                    triangles: start..start + 1,
+                });
+            }
+        }
+    }
+
+    fn positions(&self, triangle: &[u32; 3]) -> [Point3<f64>; 3] {
+        triangle.map(|vertex| {
+            let vertex = vertex as usize;
+            self.vertices.get(vertex).copied().unwrap_or_else(|| self.new_vertices[vertex - self.vertices.len()])
+        })
+    }
 }
 
 /// How far corners may lie off their plane, metres.
 fn flat_tolerance(extent_m: f64, precision_m: f64) -> f64 {
     (FLAT_SHARE * extent_m).min(FLAT_LIMIT_M).max(FLAT_DIGITS * precision_m)
-}
-
-fn triangle_draft(triangle: [u32; 3], corners: [Point3<f64>; 3]) -> Option<Draft> {
-    let centroid = centroid(&corners);
-    let area_vector = newell(&corners, &centroid);
-    let longest = (0..3).map(|at| (corners[at] - corners[(at + 1) % 3]).norm()).fold(0.0, f64::max);
-    if 2.0 * area_vector.norm() <= ZERO_WIDTH_M * longest {
-        return None;
-    }
-    let plane = Plane::through(&centroid, &area_vector)?;
-    Some(Draft { outline: triangle.to_vec(), plane, area: area_vector.norm(), triangles: vec![triangle] })
 }
 
 fn centroid(corners: &[Point3<f64>]) -> Point3<f64> {
@@ -103,12 +156,24 @@ fn centroid(corners: &[Point3<f64>]) -> Point3<f64> {
 
 /// Newell's area vector: normal to the mean plane, as long as the projected area.
 fn newell(corners: &[Point3<f64>], about: &Point3<f64>) -> Vector3<f64> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(a, b)| (a - about).cross(&(b - about))).sum::<Vector3<f64>>() / 2.0
+    let Some(last) = corners.last() else { return Vector3::zeros() };
+    let mut sum = Vector3::zeros();
+    let mut before = last - about;
+    for corner in corners {
+        let here = corner - about;
+        sum += before.cross(&here);
+        before = here;
+    }
+    sum / 2.0
 }
 
 fn area_of([a, b, c]: [Point3<f64>; 3]) -> f64 {
     (b - a).cross(&(c - a)).norm() / 2.0
+}
+
+/// Twice the area as seen from where the normal points to, negative when it runs clockwise.
+fn doubled_area([a, b, c]: [Point3<f64>; 3], normal: &Vector3<f64>) -> f64 {
+    normal.dot(&(b - a).cross(&(c - a)))
 }
 
 /// Two unit vectors in the plane that with the normal form a right-handed frame.

@@ -5,6 +5,7 @@
 
 mod build;
 mod facet;
+mod join;
 mod origin;
 mod read;
 mod source;

@@ -23,17 +23,6 @@ pub(super) struct Triangles {
 ///
 /// Edges that are walked twice (the bridge to a hole) bound nothing, so holes stay holes.
 pub(super) fn triangulate(ring: &[[f64; 2]]) -> Option<Triangles> {
-    let clean = |triangles| Triangles { triangles, crossings: Vec::new(), overlaps: false };
-    match ring.len() {
-        0..3 => return None,
-        3 => return Some(clean(vec![[0, 1, 2]])),
-        4 => {
-            if let Some(triangles) = halves(ring) {
-                return Some(clean(triangles.to_vec()));
-            }
-        }
-        _ => {}
-    }
     let edges: Vec<[usize; 2]> = (0..ring.len()).map(|at| [at, (at + 1) % ring.len()]).collect();
     if let Some(triangles) = constrained(ring, &edges) {
         let overlaps = differs(ring, &triangles);
@@ -49,12 +38,10 @@ fn doubled_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Cuts a quadrilateral along the diagonal that leaves the larger smaller half; `None` where it crosses itself.
-fn halves(ring: &[[f64; 2]]) -> Option<[[usize; 3]; 2]> {
-    let smaller = |halves: &[[usize; 3]; 2]| {
-        let areas = halves.map(|[a, b, c]| doubled_area(ring[a], ring[b], ring[c]));
-        areas[0].min(areas[1])
-    };
+/// Cuts a quadrilateral along the diagonal that leaves the larger smaller half; `None` where neither leaves two halves
+/// that run the right way round, as when it crosses itself. `signed_area` is of corners by number.
+pub(super) fn halves(signed_area: impl Fn([usize; 3]) -> f64) -> Option<[[usize; 3]; 2]> {
+    let smaller = |halves: &[[usize; 3]; 2]| signed_area(halves[0]).min(signed_area(halves[1]));
     let (first, second) = ([[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]);
     let better = if smaller(&first) >= smaller(&second) { first } else { second };
     (smaller(&better) > 0.0).then_some(better)

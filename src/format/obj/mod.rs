@@ -5,11 +5,17 @@
 //! on only what the crate reads well, and remembers on which line everything stood.
 
 mod guard;
+mod join;
+mod number;
+mod piece;
 mod write;
 
 use std::ops::Range;
 
-use guard::ObjGuard;
+use rayon::prelude::*;
+
+use join::Joined;
+use piece::{pieces, read_piece};
 pub use write::write_obj;
 
 /// What an OBJ file holds that is a mesh. Materials, texture coordinates and normals are left out.
@@ -56,6 +62,15 @@ pub struct ObjOddities {
     pub free_forms: LineTally,
 }
 
+impl ObjOddities {
+    /// Takes in what follows after `lines_before` lines.
+    fn append(&mut self, later: &ObjOddities, lines_before: u32) {
+        self.short_faces.append(later.short_faces, lines_before);
+        self.unknown_lines.append(later.unknown_lines, lines_before);
+        self.free_forms.append(later.free_forms, lines_before);
+    }
+}
+
 /// How many lines, and the first of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineTally {
@@ -68,6 +83,14 @@ impl LineTally {
     fn add(&mut self, line: u32) {
         self.first_line = if self.count == 0 { line } else { self.first_line };
         self.count += 1;
+    }
+
+    /// Takes in the tally of what follows after `lines_before` lines.
+    fn append(&mut self, later: LineTally, lines_before: u32) {
+        if self.count == 0 && later.count > 0 {
+            self.first_line = later.first_line.saturating_add(lines_before);
+        }
+        self.count += later.count;
     }
 }
 
@@ -94,13 +117,15 @@ pub enum ObjProblem {
     )]
     OutOfReach { token: String, limit: f64 },
     #[error("face index {index} points outside the file, which has {vertices} vertices; indices count from 1")]
-    IndexOutOfRange { index: i64, vertices: usize },
+    IndexOutOfRange { index: u64, vertices: usize },
+    #[error("a negative face index counts back past the first vertex of the file")]
+    BeforeFirst,
     #[error("face index 0 means nothing, indices count from 1 (or from -1 backwards)")]
     ZeroIndex,
     #[error("face corner `{token}` is not an index, expected `f v/vt/vn ...` with whole numbers")]
     NotAnIndex { token: String },
-    #[error("more than {limit} lines, vertices or face corners; split the file")]
-    TooMany { limit: u32 },
+    #[error("more than 4 billion vertices, face corners or lines; split the file")]
+    TooMany,
     #[error("the OBJ reader stopped: {message}")]
     Reader { message: String },
 }
@@ -108,71 +133,16 @@ pub enum ObjProblem {
 /// Reads OBJ text that is wholly in memory.
 ///
 /// Takes a byte order mark, Latin-1 names, any of the three line ends, continued lines, negative indices and trailing
-/// comments. Indices may point forward, as long as the vertex comes at all.
+/// comments. Indices may point forward, as long as the vertex comes at all. Pieces are read in parallel; where they are
+/// cut depends on the text alone.
 pub fn read_obj(text: &[u8]) -> Result<ObjFile, ObjError> {
-    let mut guard = ObjGuard::new(text);
-    let parsed = obj::ObjData::load_buf_with_config(&mut guard, obj::LoadConfig { strict: false });
-    if let Some(failure) = guard.failure.take() {
-        return Err(failure);
+    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+    // Old Macintosh files end lines with a carriage return alone.
+    let line_end = if memchr::memchr(b'\n', text).is_some() { b'\n' } else { b'\r' };
+    let pieces: Vec<_> = pieces(text, line_end).into_par_iter().map(|piece| read_piece(piece, line_end)).collect();
+    let mut joined = Joined::new();
+    for piece in pieces {
+        joined.add(piece)?;
     }
-    let data = parsed.map_err(|error| guard.place(error))?;
-    let mut file = ObjFile {
-        positions: std::mem::take(&mut guard.positions),
-        face_lines: std::mem::take(&mut guard.face_lines),
-        oddities: guard.oddities,
-        ..ObjFile::default()
-    };
-    take_faces(&mut file, data)?;
-    check_indices(&file)?;
-    Ok(file)
-}
-
-/// Flattens the crate's objects, groups and polygons; their order is the order of the lines.
-fn take_faces(file: &mut ObjFile, data: obj::ObjData) -> Result<(), ObjError> {
-    file.face_ends.reserve(file.face_lines.len());
-    for object in data.objects {
-        let mut groups = Vec::new();
-        for group in object.groups {
-            let first = file.face_ends.len();
-            for polygon in group.polys {
-                // An index beyond u32 is certainly out of range, and is found so by the check that follows.
-                file.corners.extend(polygon.0.iter().map(|corner| u32::try_from(corner.0).unwrap_or(u32::MAX)));
-                file.face_ends.push(u32::try_from(file.corners.len()).map_err(|_| too_many(file))?);
-            }
-            let faces = first..file.face_ends.len();
-            if !faces.is_empty() {
-                groups.push(ObjGroup { name: named(&group.name), faces });
-            }
-        }
-        if !groups.is_empty() {
-            file.objects.push(ObjObject { name: named(&object.name), groups });
-        }
-    }
-    if file.face_ends.len() != file.face_lines.len() {
-        let message = format!("{} of {} faces came back", file.face_ends.len(), file.face_lines.len());
-        return Err(ObjError { line: 0, object: None, problem: ObjProblem::Reader { message } });
-    }
-    Ok(())
-}
-
-fn check_indices(file: &ObjFile) -> Result<(), ObjError> {
-    let vertices = file.positions.len();
-    let Some(at) = file.corners.iter().position(|&corner| corner as usize >= vertices) else {
-        return Ok(());
-    };
-    let face = file.face_ends.partition_point(|&end| end as usize <= at);
-    let object = file.objects.iter().find(|object| object.groups.iter().any(|group| group.faces.contains(&face)));
-    let object = object.and_then(|object| object.name.clone());
-    let problem = ObjProblem::IndexOutOfRange { index: i64::from(file.corners[at]) + 1, vertices };
-    Err(ObjError { line: file.face_lines[face], object, problem })
-}
-
-fn too_many(file: &ObjFile) -> ObjError {
-    let line = file.face_lines.last().copied().unwrap_or(0);
-    ObjError { line, object: None, problem: ObjProblem::TooMany { limit: u32::MAX } }
-}
-
-/// The crate calls "default" what has no name, and the guard does so for it.
-fn named(name: &str) -> Option<String> {
-    (name != guard::NAMELESS).then(|| name.to_owned())
+    joined.finish()
 }

@@ -9,6 +9,7 @@ pub mod format;
 pub mod city;
 pub mod reconstruction;
 pub mod imagery;
+pub mod solvers;
 pub mod robust;
 pub mod planes;
 pub mod correspondence;

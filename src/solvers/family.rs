@@ -1,0 +1,67 @@
+//! The family's one entry: which solver serves a sample is decided by how its points are spread over the planes.
+
+use super::{
+    Poses, Row, Up, se3_6pt, se3_321, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211, sim3_31111, sim3_pair_5pt,
+    upright_se3_4pt, upright_sim3_5pt,
+};
+
+/// What is unknown of the pose.
+#[derive(Clone, Copy, Debug)]
+pub enum Sought {
+    /// Rotation and translation: 6 rows.
+    Rigid,
+    /// Rotation, translation and scale: 7 rows.
+    Similarity,
+    /// Heading and translation: 4 rows.
+    UprightRigid(Up),
+    /// Heading, translation and scale: 5 rows.
+    UprightSimilarity(Up),
+}
+
+impl Sought {
+    /// Unknowns of the pose: rows of a minimal sample.
+    pub fn unknowns(&self) -> usize {
+        match self {
+            Sought::Rigid => 6,
+            Sought::Similarity => 7,
+            Sought::UprightRigid(_) => 4,
+            Sought::UprightSimilarity(_) => 5,
+        }
+    }
+}
+
+/// All poses of a sample whose rows are grouped by plane: `points_per_plane` counts them, largest first, so that (3,2,1) is
+/// `&[3, 2, 1]` with six rows. Takes the fastest solver of the table in `solvers`. A sample that none serves (wrong
+/// number of rows, groups that do not add up) has no poses, like a degenerate one.
+pub fn solve_minimal(sought: &Sought, points_per_plane: &[usize], rows: &[Row]) -> Poses {
+    if points_per_plane.iter().sum::<usize>() != rows.len() {
+        return Poses::none();
+    }
+    let solved = match sought {
+        Sought::Rigid => rigid(points_per_plane, rows),
+        Sought::Similarity => similarity(points_per_plane, rows),
+        Sought::UprightRigid(up) => rows.try_into().ok().map(|rows| upright_se3_4pt(rows, up)),
+        Sought::UprightSimilarity(up) => rows.try_into().ok().map(|rows| upright_sim3_5pt(rows, up)),
+    };
+    solved.unwrap_or_else(Poses::none)
+}
+
+fn rigid(points_per_plane: &[usize], rows: &[Row]) -> Option<Poses> {
+    let rows: &[Row; 6] = rows.try_into().ok()?;
+    Some(match points_per_plane {
+        [3, 2, 1] => se3_321(rows),
+        [3, 1, 1, 1] => se3_3111(rows),
+        [2, ..] => se3_pair_4pt(rows),
+        _ => se3_6pt(rows),
+    })
+}
+
+fn similarity(points_per_plane: &[usize], rows: &[Row]) -> Option<Poses> {
+    let rows: &[Row; 7] = rows.try_into().ok()?;
+    Some(match points_per_plane {
+        [3, 2, 1, 1] => sim3_3211(rows),
+        [3, 1, 1, 1, 1] => sim3_31111(rows),
+        [2, ..] => sim3_pair_5pt(rows),
+        _ => sim3_7pt(rows),
+    })
+}

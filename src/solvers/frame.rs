@@ -1,0 +1,52 @@
+//! Right-handed orthonormal axes with a given third one.
+
+use crate::geometry::Vector3;
+
+/// Three orthonormal right-handed axes; coordinates in them are `(v . x, v . y, v . z)`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axes {
+    pub x: Vector3<f64>,
+    pub y: Vector3<f64>,
+    pub z: Vector3<f64>,
+}
+
+impl Axes {
+    /// Some axes whose third is the unit vector `z`. The branch keeps the divisor at 1 or above, so that no `z` is
+    /// special; the two tangents follow without a square root (Duff et al., "Building an orthonormal basis,
+    /// revisited", JCGT 2017).
+    #[inline]
+    pub(super) fn about(z: &Vector3<f64>) -> Axes {
+        let sign = if z.z < 0.0 { -1.0 } else { 1.0 };
+        let a = -1.0 / (sign + z.z);
+        let b = z.x * z.y * a;
+        Axes {
+            x: Vector3::new(1.0 + sign * z.x * z.x * a, sign * b, -sign * z.x),
+            y: Vector3::new(b, sign + z.y * z.y * a, -z.y),
+            z: *z,
+        }
+    }
+
+    #[inline]
+    pub(super) fn coordinates(&self, v: &Vector3<f64>) -> [f64; 3] {
+        [self.x.dot(v), self.y.dot(v), self.z.dot(v)]
+    }
+
+    #[inline]
+    pub(super) fn vector(&self, x: f64, y: f64, z: f64) -> Vector3<f64> {
+        self.x * x + self.y * y + self.z * z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_right_handed_and_orthonormal_for_every_third_axis() {
+        for z in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [-1.0, 0.0, 0.0], [0.36, 0.48, 0.8]] {
+            let axes = Axes::about(&Vector3::from(z));
+            assert!((axes.x.cross(&axes.y) - axes.z).norm() < 1e-15);
+            assert!((axes.x.norm() - 1.0).abs() < 1e-15 && axes.x.dot(&axes.y).abs() < 1e-15);
+        }
+    }
+}

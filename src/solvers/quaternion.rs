@@ -1,0 +1,88 @@
+//! Rotations as quadratic forms in a unit quaternion q = (w, x, y, z).
+
+use crate::geometry::{Matrix3, Vector3};
+
+pub(super) type Quaternion = [f64; 4];
+
+/// Coordinates of the ten monomials, squares first.
+pub(super) const MONOMIALS: [(usize, usize); 10] =
+    [(0, 0), (1, 1), (2, 2), (3, 3), (0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+
+#[inline]
+pub(super) fn monomials(q: &Quaternion) -> [f64; 10] {
+    let [w, x, y, z] = *q;
+    [w * w, x * x, y * y, z * z, w * x, w * y, w * z, x * y, x * z, y * z]
+}
+
+/// The value of a quadratic form given by its ten coefficients.
+#[inline]
+pub(super) fn value(coefficients: &[f64; 10], q: &Quaternion) -> f64 {
+    let mono = monomials(q);
+    (0..10).map(|j| coefficients[j] * mono[j]).sum()
+}
+
+/// R(q), homogeneous of degree 2; a rotation where |q| = 1.
+#[inline]
+pub(super) fn rotation(q: &Quaternion) -> Matrix3<f64> {
+    let [ww, xx, yy, zz, wx, wy, wz, xy, xz, yz] = monomials(q);
+    Matrix3::new(
+        ww + xx - yy - zz,
+        2.0 * (xy - wz),
+        2.0 * (xz + wy),
+        2.0 * (xy + wz),
+        ww - xx + yy - zz,
+        2.0 * (yz - wx),
+        2.0 * (xz - wy),
+        2.0 * (yz + wx),
+        ww - xx - yy + zz,
+    )
+}
+
+/// The coefficients of n . R(q) p, read off R(q) entry by entry:
+/// of ww it is n . p, of xx it is n_x p_x - n_y p_y - n_z p_z, of wx it is 2 (p x n)_x, of xy it is 2 (n_x p_y + n_y p_x).
+#[inline]
+pub(super) fn form(n: &Vector3<f64>, p: &Vector3<f64>) -> [f64; 10] {
+    let (a, b, c) = (n.x * p.x, n.y * p.y, n.z * p.z);
+    let v = p.cross(n) * 2.0;
+    [
+        a + b + c,
+        a - b - c,
+        b - a - c,
+        c - a - b,
+        v.x,
+        v.y,
+        v.z,
+        2.0 * (n.x * p.y + n.y * p.x),
+        2.0 * (n.x * p.z + n.z * p.x),
+        2.0 * (n.y * p.z + n.z * p.y),
+    ]
+}
+
+/// Hamilton's product; R(a b) = R(a) R(b).
+#[inline]
+pub(super) fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_form_of_a_row_is_n_r_p() {
+        let q = [0.5, -0.1, 0.7, 0.5];
+        let (n, p) = (Vector3::new(0.2, -0.5, 1.1), Vector3::new(3.0, 0.4, -2.0));
+        assert!((value(&form(&n, &p), &q) - n.dot(&(rotation(&q) * p))).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_product_of_quaternions_is_the_product_of_rotations() {
+        let (a, b) = ([0.5, -0.1, 0.7, 0.5], [0.1, 0.9, -0.3, 0.2]);
+        assert!((rotation(&product(&a, &b)) - rotation(&a) * rotation(&b)).norm() < 1e-15);
+    }
+}

@@ -109,8 +109,10 @@ fn reach_box(votes: &Votes, start: &Start) -> (Point3<f64>, Point3<f64>) {
 pub fn search(scene: &Scene, seed: u64, progress: Progress<'_>) -> Vec<Finalist> {
     let scorer = Scorer { votes: &scene.votes, field: &scene.field, start: scene.start };
     let seen = |p: PlaneId| scene.seen[p.0 as usize];
-    let pairing = Pairing::new(&scene.votes, scene.city, &scene.planes, &scene.start, seen);
-    let problem = PoseSearch { pairing, scorer: &scorer, panel: scene.votes.panel(200), gate_m: COARSE_GATE_M };
+    let pairing = Pairing::new(&scene.votes, &scene.planes, &scene.start, None, seen);
+    let z = Vector3::z();
+    let Some(up) = crate::solvers::Up::new(&z, &z) else { return Vec::new() };
+    let problem = PoseSearch { pairing, scorer: &scorer, up, panel: scene.votes.panel(200), gate_m: COARSE_GATE_M };
     let options = RansacOptions { seed, keep: 60, fewest_samples: 2048, most_samples: 65_536, enough_hits: 10 };
     let (ranked, samples) = ransac(&problem, &options, |n| progress("search", n, 65_536));
     eprintln!(
@@ -146,7 +148,7 @@ pub fn search(scene: &Scene, seed: u64, progress: Progress<'_>) -> Vec<Finalist>
                 slide(&scorer, &stage.panel, &first.chart, &spectrum, &first.city_from_level, stage.score_gate_m);
             f.refined = if slid == first.city_from_level { first } else { run(&slid) };
             let p = &f.refined.city_from_level;
-            f.score = if stage.panel.len() == votes.probes.len() {
+            f.score = if stage.panel.len() >= votes.firm {
                 scorer.share(p, stage.score_gate_m)
             } else {
                 scorer.panel_share(&stage.panel, p, stage.score_gate_m)

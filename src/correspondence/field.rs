@@ -51,9 +51,12 @@ pub struct FacetField {
 #[derive(Clone, Copy, Debug)]
 pub struct Probe {
     pub position: Point3<f64>,
+    /// Of the patch; for a loose point the direction to the cameras that saw it.
     pub normal: Vector3<f64>,
     /// False where it is not known from which side the point was seen: both signs of the normal count.
     pub sided: bool,
+    /// Cosine of the largest angle between `normal` and the outward normal of a facet that the point may lie on.
+    pub min_cos: f64,
 }
 
 /// Triangles smaller than this have no direction to speak of.
@@ -129,10 +132,10 @@ impl FacetField {
         }
     }
 
-    /// The nearest triangle within `gate_m` whose outward normal makes an angle with the probe's of at most
-    /// `acos(min_cos)`. `gate_m` may not exceed the reach that the field was made with.
+    /// The nearest triangle within `gate_m` whose outward normal agrees with the probe's. `gate_m` may not exceed the reach
+    /// that the field was made with.
     #[inline]
-    pub fn nearest(&self, probe: &Probe, min_cos: f64, gate_m: f64) -> Option<Hit> {
+    pub fn nearest(&self, probe: &Probe, gate_m: f64) -> Option<Hit> {
         let p = &probe.position;
         let d = (p - self.low) / self.cell_m;
         if !(d.x >= 0.0 && d.y >= 0.0 && d.z >= 0.0) {
@@ -149,7 +152,7 @@ impl FacetField {
         for &i in list {
             let t = &self.triangles[i as usize];
             let cos = t.normal.dot(&probe.normal);
-            if (if probe.sided { cos } else { cos.abs() }) < min_cos {
+            if (if probe.sided { cos } else { cos.abs() }) < probe.min_cos {
                 continue;
             }
             let across_m = t.normal.dot(&p.coords) + t.offset;

@@ -11,7 +11,7 @@ mod votes;
 pub use field::{FacetField, FieldTriangle, Hit, Probe};
 pub use pairing::{Pair, Pairing, Sample};
 pub use refine::{ErrorModel, Refined, refine};
-pub use scoring::{Mover, NORMAL_GATE_DEG, Scorer};
+pub use scoring::{Mover, Scorer};
 pub use search::{PoseSearch, largest_shift};
 pub use slide::slide;
 pub use votes::{LevelPatch, Votes};

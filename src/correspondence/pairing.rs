@@ -13,13 +13,13 @@
 //!
 //! Frames: `level` is centred on the cloud, z up, in metres of the start; the city frame is its own local one.
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, SymmetricEigen, Vector4};
 
 use super::votes::{LevelPatch, Votes};
-use crate::city::CityModel;
 use crate::geometry::{Plane, Point3, Start, Vector3};
 use crate::planes::{CityPlanes, PlaneId};
 use crate::robust::Random;
+use crate::solvers::Row;
 
 /// A plane of the city that a patch may lie on.
 #[derive(Clone, Copy, Debug)]
@@ -42,22 +42,26 @@ pub struct Pair {
     pub target: Plane,
 }
 
-/// A minimal sample: the heading by the first pair, and the pairs.
+/// A minimal sample: pairs, and what completes them where they leave a direction open.
 #[derive(Clone, Debug)]
 pub struct Sample {
     pub pairs: Vec<Pair>,
-    /// Mean of (scale relative to the start, translation of the level origin in the city, metres) after all pairs: where
-    /// the pairs leave something open, it is as the start has it.
-    pub expected: Vector4<f64>,
+    /// A rough heading, by the azimuths of the first pair.
     pub heading_rad: f64,
+    /// Rows for what the pairs leave open (a height that no floor fixes), drawn from what the start says of it.
+    pub completion: Vec<Row>,
 }
 
 /// Draws samples.
 pub struct Pairing<'a> {
     votes: &'a Votes,
     start: Start,
-    /// By class of tilt, each sorted by azimuth.
-    targets: Vec<Target>,
+    /// Metres of the start per metre of the city, where it is held.
+    scale: Option<f64>,
+    /// Planes with an azimuth, sorted by it.
+    turned_targets: Vec<Target>,
+    /// Level planes.
+    level_targets: Vec<Target>,
     /// Rising sums of the patches' weights: all, and those with an azimuth.
     all: Vec<f64>,
     turned: Vec<f64>,
@@ -74,25 +78,24 @@ const LEAST_SIN_FOR_AZIMUTH: f64 = 0.3;
 const ROW_SIGMA_M: f64 = 0.3;
 /// ... and what an uncertain heading adds, per metre of distance from the middle of the cloud.
 const ROW_SIGMA_PER_M: f64 = 0.015;
-/// Rows beyond the first: with them scale and translation are fixed.
-const MOST_PAIRS: usize = 4;
 /// A patch whose row is known to within this says nothing new, metres.
 const LEARNED_M: f64 = 1.0;
 /// Patches compared when the next one is chosen.
 const TENDER: usize = 6;
+/// An open direction that is all scale and hardly any translation cannot be written as a plane.
+const SMALLEST_ACROSS: f64 = 1e-3;
 /// Planes smaller than this are not offered as pairs (they still count in every score): a patch of that size has no firm normal.
 const SMALLEST_TARGET_M2: f64 = 1.0;
 
 impl<'a> Pairing<'a> {
-    /// `seen` tells whether any of a plane can be seen.
+    /// `seen` tells whether any of a plane can be seen; `scale` is relative to the start, free where `None`.
     pub fn new(
         votes: &'a Votes,
-        city: &CityModel,
         planes: &CityPlanes,
         start: &Start,
+        scale: Option<f64>,
         seen: impl Fn(PlaneId) -> bool,
     ) -> Pairing<'a> {
-        let _ = city;
         let target = |(i, p): (usize, &crate::planes::CityPlane)| {
             let id = PlaneId(i as u32);
             (p.area_m2 >= SMALLEST_TARGET_M2 && seen(id)).then(|| Target {
@@ -104,7 +107,10 @@ impl<'a> Pairing<'a> {
                 weight: p.area_m2.sqrt(),
             })
         };
-        let targets = planes.planes.iter().enumerate().filter_map(target).collect();
+        let targets = planes.planes.iter().enumerate().filter_map(target);
+        let (mut turned_targets, level_targets): (Vec<Target>, Vec<Target>) =
+            targets.partition(|t| has_azimuth(&t.plane.normal));
+        turned_targets.sort_by(|a, b| a.azimuth.total_cmp(&b.azimuth).then(a.id.cmp(&b.id)));
         let cumulative = |take: fn(&LevelPatch) -> bool| -> Vec<f64> {
             let weight = |p: &LevelPatch| if take(p) { p.weight } else { 0.0 };
             votes
@@ -118,25 +124,32 @@ impl<'a> Pairing<'a> {
         };
         let all = cumulative(|_| true);
         let turned = cumulative(|p| has_azimuth(&p.normal));
-        Pairing { votes, start: *start, targets, all, turned }
+        Pairing { votes, start: *start, scale, turned_targets, level_targets, all, turned }
+    }
+
+    /// The scale relative to the start, where it is held.
+    pub fn scale(&self) -> Option<f64> {
+        self.scale
     }
 
     /// A sample, or `None` where the drawn patch fits nothing.
     pub fn draw(&self, random: &mut Random) -> Option<Sample> {
         let first = random.weighted(&self.turned)?;
-        let mut state = State::new(&self.start, &self.votes.center_in_city);
+        let mut state = State::new(&self.start, self.scale, &self.votes.center_in_city);
+        let needed = if self.scale.is_some() { 3 } else { 4 };
         let (heading_rad, pair) = self.first_pair(first, &state, random)?;
         state.heading_rad = heading_rad;
-        let mut pairs = Vec::with_capacity(MOST_PAIRS);
+        let mut pairs = Vec::with_capacity(needed);
         state.learn(&self.votes.patches[first].center, &pair.target);
         pairs.push(pair);
-        while pairs.len() < MOST_PAIRS {
+        while pairs.len() < needed {
             let Some(patch) = self.least_known(&state, random) else { break };
             let pair = self.next_pair(patch, &state, random)?;
             state.learn(&self.votes.patches[patch].center, &pair.target);
             pairs.push(pair);
         }
-        Some(Sample { pairs, expected: state.mean, heading_rad })
+        let completion = state.completion(needed - pairs.len(), random)?;
+        Some(Sample { pairs, heading_rad, completion })
     }
 
     /// A plane for the first patch, and the heading that turns the patch into it.
@@ -147,11 +160,11 @@ impl<'a> Pairing<'a> {
         for flip in [1.0, -1.0].into_iter().take(if p.sided { 1 } else { 2 }) {
             let normal = p.normal * flip;
             let own = azimuth(&normal);
-            for t in &self.targets {
-                let heading = wrapped(t.azimuth - own);
-                if heading.abs() > reach || !same_tilt(&normal, t) || !has_azimuth(&t.plane.normal) {
+            for t in self.facing(own, reach) {
+                if !same_tilt(&normal, t) {
                     continue;
                 }
+                let heading = wrapped(t.azimuth - own);
                 let turned = State { heading_rad: heading, ..*state };
                 if let Some(likelihood) = turned.likelihood(&p.center, t) {
                     choice.offer(
@@ -181,15 +194,31 @@ impl<'a> Pairing<'a> {
         best
     }
 
+    /// Planes whose azimuth is within `reach` of `azimuth`.
+    fn facing(&self, azimuth: f64, reach: f64) -> impl Iterator<Item = &Target> {
+        let targets = &self.turned_targets;
+        let between = |low: f64, high: f64| {
+            let first = targets.partition_point(|t| t.azimuth < low);
+            &targets[first..targets.partition_point(|t| t.azimuth <= high).max(first)]
+        };
+        let (low, high) = (wrapped(azimuth) - reach, wrapped(azimuth) + reach);
+        let turn = std::f64::consts::TAU;
+        let all = reach >= std::f64::consts::PI;
+        let main = if all { &targets[..] } else { between(low, high) };
+        let over = if all { &[][..] } else { between(low + turn, high + turn) };
+        let under = if all { &[][..] } else { between(low - turn, high - turn) };
+        under.iter().chain(main).chain(over)
+    }
+
     fn next_pair(&self, patch: usize, state: &State, random: &mut Random) -> Option<Pair> {
         let p = &self.votes.patches[patch];
         let mut choice = Choice::default();
         for flip in [1.0, -1.0].into_iter().take(if p.sided { 1 } else { 2 }) {
             let normal = state.turn(&(p.normal * flip));
-            let own = azimuth(&normal);
-            let level = !has_azimuth(&normal);
-            for t in &self.targets {
-                if !same_tilt(&normal, t) || (!level && wrapped(t.azimuth - own).abs() > SAME_AZIMUTH_RAD) {
+            let level: &[Target] = if has_azimuth(&normal) { &[] } else { &self.level_targets };
+            let turned = self.facing(azimuth(&normal), if level.is_empty() { SAME_AZIMUTH_RAD } else { 0.0 });
+            for t in turned.chain(level) {
+                if !same_tilt(&normal, t) {
                     continue;
                 }
                 if let Some(likelihood) = state.likelihood(&p.center, t) {
@@ -210,13 +239,14 @@ struct State {
 }
 
 impl State {
-    fn new(start: &Start, center: &Point3<f64>) -> State {
+    fn new(start: &Start, scale: Option<f64>, center: &Point3<f64>) -> State {
         let (p, h) = (start.position_sigma_m, start.height_sigma_m);
-        let variances = Vector4::new(start.log_scale_sigma, p, p, h).map(|s| s * s);
+        let scale_sigma = if scale.is_some() { 0.0 } else { start.log_scale_sigma };
+        let variances = Vector4::new(scale_sigma, p, p, h).map(|s| s * s);
         State {
             heading_rad: 0.0,
 
-            mean: Vector4::new(1.0, center.x, center.y, center.z),
+            mean: Vector4::new(scale.unwrap_or(1.0), center.x, center.y, center.z),
             covariance: Matrix4::from_diagonal(&variances),
         }
     }
@@ -259,6 +289,30 @@ impl State {
             }
         }
         Some(target.weight * (-0.5 * miss_sq).exp())
+    }
+
+    /// Rows for the `missing` least known combinations of scale and translation, each at a value drawn evenly from the three
+    /// sigmas that are left of it; `None` where the scale alone is open, which no plane can fix.
+    fn completion(&self, missing: usize, random: &mut Random) -> Option<Vec<Row>> {
+        let eigen = SymmetricEigen::new(self.covariance);
+        let mut order = [0, 1, 2, 3];
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let row = |k: &usize| {
+            let v = eigen.eigenvectors.column(*k).into_owned();
+            let sigma = eigen.eigenvalues[*k].max(0.0).sqrt();
+            let value = v.dot(&self.mean) + sigma * 3.0 * (2.0 * random.unit() - 1.0);
+            // v . (scale, translation) = value is the row of a point p with n . R p = v[0] / |n| on the plane across n.
+            let across = v.fixed_rows::<3>(1).into_owned();
+            let length = across.norm();
+            let normal = across.try_normalize(SMALLEST_ACROSS)?;
+            Some(Row { point: self.unturn(&normal) * (v[0] / length), normal, offset: -value / length })
+        };
+        order[..missing.min(4)].iter().map(row).collect()
+    }
+
+    /// City to level directions.
+    fn unturn(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        State { heading_rad: -self.heading_rad, ..*self }.turn(v)
     }
 
     /// Kalman update with the row of a pair.

@@ -12,7 +12,7 @@
 use rayon::prelude::*;
 
 use super::field::Hit;
-use super::scoring::{Mover, NORMAL_GATE_DEG, Scorer};
+use super::scoring::{Mover, Scorer};
 use crate::geometry::{Point3, Similarity};
 use crate::planes::{CityPlanes, PlaneId};
 use crate::robust::{Chart, NormalEquations, tukey_weight};
@@ -39,6 +39,8 @@ pub struct Refined {
 const OUTSIDE_SHARE: f64 = 0.5;
 /// Directions held worse than this are not moved by least squares, metres.
 const HELD_M: f64 = 1.0;
+/// Loose points, of unknown direction, are taken for a facet's own only this close to it, in sigmas of a point.
+const LOOSE_GATE_SIGMAS: f64 = 4.0;
 /// Probes per task.
 const CHUNK: usize = 512;
 
@@ -85,8 +87,11 @@ fn equations(
     gate_m: f64,
     errors: &ErrorModel,
 ) -> NormalEquations {
-    let mut rows: Vec<RowOnPlane> =
-        panel.par_chunks(CHUNK).map(|chunk| rows(scorer, planes, chunk, pose, gate_m)).collect::<Vec<_>>().concat();
+    let mut rows: Vec<RowOnPlane> = panel
+        .par_chunks(CHUNK)
+        .map(|chunk| rows(scorer, planes, chunk, pose, gate_m, errors))
+        .collect::<Vec<_>>()
+        .concat();
     rows.sort_by_key(|r| r.plane);
     let mut sums = NormalEquations::default();
     for of_plane in rows.chunk_by(|a, b| a.plane == b.plane) {
@@ -103,13 +108,21 @@ fn equations(
     sums
 }
 
-fn rows(scorer: &Scorer, planes: &CityPlanes, panel: &[u32], pose: &Similarity, gate_m: f64) -> Vec<RowOnPlane> {
+fn rows(
+    scorer: &Scorer,
+    planes: &CityPlanes,
+    panel: &[u32],
+    pose: &Similarity,
+    gate_m: f64,
+    errors: &ErrorModel,
+) -> Vec<RowOnPlane> {
     let mover = Mover::new(pose);
     let gate_m = gate_m * pose.scale;
-    let min_cos = NORMAL_GATE_DEG.to_radians().cos();
+    let loose_gate_m = gate_m.min(LOOSE_GATE_SIGMAS * errors.point_sigma_m);
     let row = |&i: &u32| {
         let probe = mover.probe(&scorer.votes.probes[i as usize]);
-        let hit = scorer.field.nearest(&probe, min_cos, gate_m)?;
+        let gate_m = if (i as usize) < scorer.votes.firm { gate_m } else { loose_gate_m };
+        let hit = scorer.field.nearest(&probe, gate_m)?;
         let weight = tukey_weight(hit.across_m * hit.across_m, gate_m);
         let facet = scorer.field.triangles[hit.triangle as usize].facet;
         (hit.outside_m <= OUTSIDE_SHARE * gate_m && weight > 0.0).then(|| RowOnPlane {

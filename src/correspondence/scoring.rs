@@ -11,9 +11,6 @@ use super::votes::Votes;
 use crate::geometry::{Point3, Similarity, Start, Vector3};
 use crate::robust::vote;
 
-/// Normals of a point and its facet agree within this angle.
-pub const NORMAL_GATE_DEG: f64 = 25.0;
-
 /// What a pose is judged against.
 pub struct Scorer<'a> {
     pub votes: &'a Votes,
@@ -33,9 +30,8 @@ impl Scorer<'_> {
     pub fn panel_share(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> f64 {
         let mover = Mover::new(city_from_level);
         let gate_m = gate_m * city_from_level.scale;
-        let min_cos = NORMAL_GATE_DEG.to_radians().cos();
         let explained = |&i: &u32| {
-            let hit = self.field.nearest(&mover.probe(&self.votes.probes[i as usize]), min_cos, gate_m);
+            let hit = self.field.nearest(&mover.probe(&self.votes.probes[i as usize]), gate_m);
             hit.map_or(0.0, |h| vote(h.distance_sq(), gate_m))
         };
         panel.iter().map(explained).sum::<f64>() / panel.len().max(1) as f64
@@ -52,9 +48,8 @@ impl Scorer<'_> {
     pub fn hits(&self, city_from_level: &Similarity, gate_m: f64) -> Vec<Option<Hit>> {
         let mover = Mover::new(city_from_level);
         let gate_m = gate_m * city_from_level.scale;
-        let min_cos = NORMAL_GATE_DEG.to_radians().cos();
         let chunk = |probes: &[Probe]| -> Vec<Option<Hit>> {
-            probes.iter().map(|p| self.field.nearest(&mover.probe(p), min_cos, gate_m)).collect()
+            probes.iter().map(|p| self.field.nearest(&mover.probe(p), gate_m)).collect()
         };
         self.votes.probes.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat()
     }
@@ -106,6 +101,6 @@ impl Mover {
     #[inline]
     pub fn probe(&self, p: &Probe) -> Probe {
         let position = Point3::from(self.scaled * p.position.coords + self.translation);
-        Probe { position, normal: self.rotation * p.normal, sided: p.sided }
+        Probe { position, normal: self.rotation * p.normal, ..*p }
     }
 }

@@ -1,14 +1,18 @@
 //! The robust search for poses: minimal samples over patch-plane pairs, scored on facets.
 
-use super::pairing::{Pairing, Sample};
+use super::pairing::{Pair, Pairing, Sample};
 use super::scoring::Scorer;
-use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
+use super::votes::LevelPatch;
+use crate::geometry::{Point3, Similarity, Vector3};
 use crate::robust::{Problem, Random};
+use crate::solvers::{Poses, Row, Up, upright_se3_4pt, upright_sim3_5pt};
 
 /// The alignment as the robust loop sees it. Poses are `city_from_level`.
 pub struct PoseSearch<'a> {
     pub pairing: Pairing<'a>,
     pub scorer: &'a Scorer<'a>,
+    /// The vertical, common to both frames.
+    pub up: Up,
     /// Probes that rank hypotheses.
     pub panel: Vec<u32>,
     /// Within this distance a vote counts for a hypothesis, metres of the start: a minimal sample extrapolates the noise of a few
@@ -24,7 +28,7 @@ impl Problem for PoseSearch<'_> {
 
     fn hypothesize(&self, random: &mut Random, poses: &mut Vec<Similarity>) {
         let Some(sample) = self.pairing.draw(random) else { return };
-        poses.extend(self.solve(&sample).into_iter().filter(|pose| self.scorer.within_reach(pose)));
+        poses.extend(self.solve(&sample).iter().filter(|pose| self.scorer.within_reach(pose)));
     }
 
     fn score(&self, pose: &Similarity) -> f64 {
@@ -37,11 +41,41 @@ impl Problem for PoseSearch<'_> {
 }
 
 impl PoseSearch<'_> {
-    fn solve(&self, sample: &Sample) -> Option<Similarity> {
-        let rotation = Rotation3::from_axis_angle(&Vector3::z_axis(), sample.heading_rad);
-        let e = &sample.expected;
-        (e[0] > 0.0).then_some(Similarity { scale: e[0], rotation, translation: Vector3::new(e[1], e[2], e[3]) })
+    /// The poses that lay the sample's patches on their planes. The first patch gives two points, since its plane fixes the
+    /// heading; every other pair gives one; what they leave open is completed from the start.
+    fn solve(&self, sample: &Sample) -> Poses {
+        let patch = |pair: &Pair| &self.scorer.votes.patches[pair.patch as usize];
+        let on = |point: Vector3<f64>, pair: &Pair| Row {
+            point: point * self.pairing.scale().unwrap_or(1.0),
+            normal: pair.target.normal,
+            offset: pair.target.offset,
+        };
+        let Some(first) = sample.pairs.first() else { return Poses::none() };
+        let along = first_axis(patch(first));
+        let rows: Vec<Row> = [1.0, -1.0]
+            .into_iter()
+            .map(|side| on(patch(first).center.coords + along * side, first))
+            .chain(sample.pairs[1..].iter().map(|pair| on(patch(pair).center.coords, pair)))
+            .chain(sample.completion.iter().copied())
+            .collect();
+        match self.pairing.scale() {
+            None => <&[Row; 5]>::try_from(&rows[..]).map_or(Poses::none(), |rows| upright_sim3_5pt(rows, &self.up)),
+            Some(scale) => {
+                let poses =
+                    <&[Row; 4]>::try_from(&rows[..]).map_or(Poses::none(), |rows| upright_se3_4pt(rows, &self.up));
+                let mut scaled = Poses::none();
+                poses.iter().for_each(|pose| scaled.push(Similarity { scale, ..*pose }));
+                scaled
+            }
+        }
     }
+}
+
+/// The level direction in a patch's plane, as long as the patch: two points along it have the heading of the plane.
+fn first_axis(patch: &LevelPatch) -> Vector3<f64> {
+    let level = Vector3::z().cross(&patch.normal).try_normalize(0.0).unwrap_or_default();
+    let [a, b] = [0, 1].map(|k| patch.axes[k].dot(&level) * patch.spread[k]);
+    level * (a * a + b * b).sqrt().max(f64::MIN_POSITIVE)
 }
 
 /// The largest distance between the images of six places round the middle of the level frame.

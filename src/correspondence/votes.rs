@@ -33,12 +33,12 @@ pub struct Votes {
     /// Where the start puts the level frame's origin; city frame (local).
     pub center_in_city: Point3<f64>,
     pub patches: Vec<LevelPatch>,
-    /// Points of the patches, patch by patch, level frame.
+    /// Points of the patches, patch by patch, then loose points that cameras saw; level frame.
     pub probes: Vec<Probe>,
-    /// Weight of each probe; they add up to 1.
+    /// How many of the probes belong to patches.
+    pub firm: usize,
+    /// Weight of each probe: those of patches add up to 1, loose ones have none.
     pub weights: Vec<f64>,
-    /// Patch of each probe.
-    pub patch_of: Vec<u32>,
     /// Index of each probe in `Patches::points`.
     pub point_of: Vec<u32>,
     /// Noise of points across their local planes, level frame (metres of the start).
@@ -47,6 +47,11 @@ pub struct Votes {
     pub radius_m: f64,
 }
 
+/// Normals of a patch and its facet agree within this angle: patch normals are good to some degrees, walls of a block turn
+/// by more.
+const SAME_NORMAL_DEG: f64 = 25.0;
+/// A facet that is seen at a more grazing angle shows no points.
+const GRAZING_DEG: f64 = 83.0;
 /// Flat enough for a floor: a wall leans less than this from upright and a floor from level.
 const UPRIGHT_SIN: f64 = 0.2;
 
@@ -65,21 +70,24 @@ impl Votes {
             center_in_city: city_from_sfm.apply(&middle),
             patches: Vec::new(),
             probes: Vec::new(),
+            firm: 0,
             weights: Vec::new(),
-            patch_of: Vec::new(),
             point_of: Vec::new(),
             noise_m: patches.noise * city_from_sfm.scale,
             radius_m: 0.0,
         };
         votes.take_patches(patches);
+        votes.firm = votes.probes.len();
         votes.weigh();
+        votes.take_loose_points(patches);
         votes.radius_m = votes.horizontal_radius();
         votes
     }
 
     fn take_patches(&mut self, patches: &Patches) {
         let to_level = self.level_from_sfm;
-        for (p, patch) in patches.patches.iter().enumerate() {
+        let min_cos = SAME_NORMAL_DEG.to_radians().cos();
+        for patch in &patches.patches {
             let mut normal = to_level.rotation * patch.fit.plane.normal;
             // Nobody scans a floor from below: where no camera tells, level surfaces look up.
             let level = normal.z.abs() > 1.0 - UPRIGHT_SIN;
@@ -90,8 +98,7 @@ impl Votes {
             let first = self.probes.len();
             for &m in &patch.members {
                 let position = to_level.apply(&patches.points[m as usize]);
-                self.probes.push(Probe { position, normal, sided });
-                self.patch_of.push(p as u32);
+                self.probes.push(Probe { position, normal, sided, min_cos });
                 self.point_of.push(m);
             }
             self.patches.push(LevelPatch {
@@ -103,6 +110,22 @@ impl Votes {
                 probes: first..self.probes.len(),
                 weight: 0.0,
             });
+        }
+    }
+
+    /// Points outside all patches say nothing in a search; beside a nearly right pose those on small or grazed facets help to
+    /// hold it, since a facet must at least face the cameras that saw the point.
+    fn take_loose_points(&mut self, patches: &Patches) {
+        let to_level = self.level_from_sfm;
+        let mut taken = vec![false; patches.points.len()];
+        self.point_of.iter().for_each(|&i| taken[i as usize] = true);
+        let min_cos = GRAZING_DEG.to_radians().cos();
+        for i in 0..patches.points.len() {
+            let Some(view) = patches.views[i].try_normalize(0.0).filter(|_| !taken[i]) else { continue };
+            let position = to_level.apply(&patches.points[i]);
+            self.probes.push(Probe { position, normal: to_level.rotation * view, sided: true, min_cos });
+            self.point_of.push(i as u32);
+            self.weights.push(0.0);
         }
     }
 
@@ -121,7 +144,7 @@ impl Votes {
     }
 
     fn horizontal_radius(&self) -> f64 {
-        let mut radii: Vec<f64> = self.probes.iter().map(|p| p.position.coords.xy().norm()).collect();
+        let mut radii: Vec<f64> = self.probes[..self.firm].iter().map(|p| p.position.coords.xy().norm()).collect();
         radii.sort_by(f64::total_cmp);
         radii.get(radii.len() * 9 / 10).copied().unwrap_or(0.0)
     }

@@ -44,6 +44,9 @@ pub struct Patches {
     pub support: Vec<PointIndex>,
     /// Their positions, sfm frame.
     pub points: Vec<Point3<f64>>,
+    /// Mean direction from each of them to the cameras that saw it (or the file's own normal), any length; zero where
+    /// neither is known.
+    pub views: Vec<Vector3<f64>>,
     pub patches: Vec<Patch>,
     /// Median standard deviation of points across their local planes, sfm units.
     pub noise: f64,
@@ -101,6 +104,7 @@ pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, opti
     let views = outward_hints(r, &found.support);
     let regions = grower.grow(options.fewest_points);
     found.patches = regions.into_iter().filter_map(|members| patch(&found.points, members, &views)).collect();
+    found.views = views;
     found
 }
 

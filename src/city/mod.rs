@@ -8,6 +8,7 @@ mod facet;
 mod join;
 mod origin;
 mod read;
+mod recognise;
 mod source;
 mod triangulate;
 mod warning;

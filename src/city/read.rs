@@ -4,8 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::build::build;
+use super::recognise::{Format, recognise};
 use super::source::Source;
 use super::{CityModel, CityRole};
+use crate::format::gltf::{self, GltfError};
 use crate::format::obj::{self, ObjError};
 
 /// How to take city files.
@@ -31,6 +33,10 @@ pub enum CityError {
     Unreadable { path: PathBuf, reason: io::Error },
     #[error("{error} ({})", obj_place(path, error))]
     Obj { path: PathBuf, error: ObjError },
+    #[error("{error} ({})", gltf_place(path, error))]
+    Gltf { path: PathBuf, error: Box<GltfError> },
+    #[error("{found}, expected an OBJ, glTF or GLB file; {remedy} ({})", path.display())]
+    OtherFormat { path: PathBuf, found: &'static str, remedy: &'static str },
     #[error("the city has no faces: {found}; expected polygons (`f` lines, or triangles of a mesh) ({})", path.display())]
     NoFaces { path: PathBuf, found: String },
     #[error("more than 4 billion vertices or triangles; split the model ({})", path.display())]
@@ -45,6 +51,12 @@ fn obj_place(path: &Path, error: &ObjError) -> String {
     }
 }
 
+fn gltf_place(path: &Path, error: &GltfError) -> String {
+    let object = error.object.as_ref().map_or(String::new(), |name| format!("object {name}, "));
+    let place = if error.place.is_empty() { String::new() } else { format!("{}, ", error.place) };
+    format!("{object}{place}{}", path.display())
+}
+
 /// Reads CITY and further meshes (terrain) into one model with one common origin.
 pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Result<CityModel, CityError> {
     let mut sources = vec![read_source(city, CityRole::City, options)?];
@@ -56,6 +68,16 @@ pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Res
 
 fn read_source(path: &Path, role: CityRole, options: &CityOptions) -> Result<Source, CityError> {
     let bytes = std::fs::read(path).map_err(|reason| CityError::Unreadable { path: path.to_owned(), reason })?;
-    let file = obj::read_obj(&bytes).map_err(|error| CityError::Obj { path: path.to_owned(), error })?;
-    Ok(Source::from_obj(path, role, options.up, file))
+    match recognise(&bytes, path)? {
+        Format::Gltf => {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let file = gltf::read_gltf(&bytes, folder);
+            let file = file.map_err(|error| CityError::Gltf { path: path.to_owned(), error: Box::new(error) })?;
+            Ok(Source::from_gltf(path, role, file))
+        }
+        Format::Obj => {
+            let file = obj::read_obj(&bytes).map_err(|error| CityError::Obj { path: path.to_owned(), error })?;
+            Ok(Source::from_obj(path, role, options.up, file))
+        }
+    }
 }

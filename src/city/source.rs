@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::warning::{CityDefect, CityPlace, CityWarning};
 use super::{CityRole, CityUp};
+use crate::format::gltf::GltfFile;
 use crate::format::obj::{ObjFile, ObjObject, ObjOddities};
 use crate::geometry::Point3;
 
@@ -17,6 +18,9 @@ const FINEST_DECIMALS: i32 = 6;
 /// How far a scaled coordinate may be from a whole number: f64 holds ten-metre-thousand kilometres to 1e-9 m, which at
 /// micrometres is a thousandth of a digit.
 const MULTIPLE_TOLERANCE: f64 = 1e-2;
+
+/// Numbers held no finer than this share of a digit would all look like multiples of it.
+const TELLING_SPACING: f64 = 0.2;
 
 /// Share of coordinates with more digits than the rest (computed ones) that does not make a file finer.
 const ODD_SHARE: f64 = 0.01;
@@ -76,7 +80,7 @@ impl Source {
         Source {
             path: path.to_owned(),
             role,
-            precision_m: written_precision(&positions),
+            precision_m: written_precision(&positions, 0.0),
             positions,
             corners: file.corners,
             face_ends: file.face_ends,
@@ -86,6 +90,45 @@ impl Source {
             shares_vertices: true,
             warnings: obj_warnings(path, &file.oddities),
         }
+    }
+}
+
+impl Source {
+    /// glTF is y up by its standard.
+    pub fn from_gltf(path: &Path, role: CityRole, file: GltfFile) -> Source {
+        let spacing_m = file.parts.iter().map(|part| part.spacing_m).fold(0.0, f64::max);
+        let without_surface = CityWarning {
+            defect: CityDefect::NoSurface,
+            count: file.without_surface,
+            example: CityPlace {
+                path: path.to_owned(),
+                line: None,
+                object: file.first_without_surface.unwrap_or_default(),
+            },
+        };
+        let triangles = file.parts.iter().map(|part| part.triangles.len()).sum();
+        let mut source = Source {
+            path: path.to_owned(),
+            role,
+            positions: Vec::new(),
+            corners: Vec::with_capacity(3 * triangles),
+            face_ends: (1..=triangles).map(|face| 3 * face as u32).collect(),
+            face_lines: Vec::new(),
+            face_objects: Vec::with_capacity(triangles),
+            objects: Vec::with_capacity(file.parts.len()),
+            shares_vertices: false,
+            precision_m: 0.0,
+            warnings: if file.without_surface > 0 { vec![without_surface] } else { Vec::new() },
+        };
+        for part in file.parts {
+            let first = source.positions.len() as u32;
+            source.face_objects.extend(std::iter::repeat_n(source.objects.len() as u32, part.triangles.len()));
+            source.objects.push(part.name);
+            source.corners.extend(part.triangles.iter().flatten().map(|index| first + index));
+            source.positions.extend(part.positions.into_iter().map(from_y_up));
+        }
+        source.precision_m = written_precision(&source.positions, spacing_m);
+        source
     }
 }
 
@@ -103,22 +146,21 @@ fn obj_warnings(path: &Path, oddities: &ObjOddities) -> Vec<CityWarning> {
     .collect()
 }
 
-/// The power of ten that nearly all coordinates are multiples of: what the writer rounded to.
-fn written_precision(positions: &[Point3<f64>]) -> f64 {
+/// The power of ten that nearly all coordinates are multiples of: what the writer rounded to. Numbers that the format
+/// itself can only hold to `spacing_m` are no better known than that.
+fn written_precision(positions: &[Point3<f64>], spacing_m: f64) -> f64 {
     let step = positions.len().div_ceil(PRECISION_SAMPLES).max(1);
-    let sample = || positions.iter().step_by(step).flat_map(|position| position.iter().copied());
-    let is_multiple = |value: f64, per_metre: f64| {
+    let sample: Vec<f64> = positions.iter().step_by(step).flat_map(|position| position.iter().copied()).collect();
+    let is_odd = |value: f64, per_metre: f64| {
         let scaled = value * per_metre;
-        (scaled - scaled.round()).abs() < MULTIPLE_TOLERANCE
+        (scaled - scaled.round()).abs() > MULTIPLE_TOLERANCE.max(spacing_m * per_metre)
     };
-    (0..FINEST_DECIMALS)
-        .map(|decimals| 10_f64.powi(decimals))
-        .find(|&per_metre| {
-            let odd = sample().filter(|&value| !is_multiple(value, per_metre)).count();
-            odd as f64 <= ODD_SHARE * sample().count() as f64
-        })
-        .unwrap_or(10_f64.powi(FINEST_DECIMALS))
-        .recip()
+    let powers = (0..=FINEST_DECIMALS).map(|decimals| 10_f64.powi(decimals));
+    let found = powers.take_while(|per_metre| spacing_m * per_metre < TELLING_SPACING).find(|&per_metre| {
+        let odd = sample.iter().filter(|&&value| is_odd(value, per_metre)).count();
+        odd as f64 <= ODD_SHARE * sample.len() as f64
+    });
+    found.map_or(spacing_m.max(10_f64.powi(-FINEST_DECIMALS)), f64::recip)
 }
 
 /// The turn that glTF's axes need, and OBJ files that are y up.

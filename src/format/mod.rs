@@ -2,6 +2,7 @@
 
 mod alignment;
 pub mod colmap;
+pub mod gltf;
 pub mod obj;
 mod placement;
 pub mod ply;

@@ -1,0 +1,246 @@
+//! What must hold before the `gltf` crate may read.
+
+use gltf::json;
+use gltf::json::accessor::{ComponentType, GenericComponentType, IndexComponentType, Type};
+use gltf::json::validation::{Checked, Error, Validate};
+
+use super::buffers::Buffers;
+use super::nodes::{json_error, missing};
+use super::{GltfError, GltfProblem};
+
+/// An accessor without bytes is all zeros and may claim any count; none that is honest claims as much as this.
+const ZEROS_LIMIT: u64 = 1 << 24;
+
+/// Parts of a glTF file that a reader of triangles must trust.
+const GEOMETRY: [&str; 7] = ["accessors", "bufferViews", "buffers", "meshes", "nodes", "scene", "scenes"];
+
+/// Extensions that change how a surface looks, and not where it is.
+const LOOKS: [&str; 6] =
+    ["KHR_materials", "KHR_texture", "EXT_texture", "KHR_lights", "EXT_structural_metadata", "EXT_mesh_features"];
+
+/// Parses the JSON and checks what all geometry hangs on.
+pub(super) fn document(json: &[u8]) -> Result<gltf::Document, GltfError> {
+    let root: json::Root = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    if !root.asset.version.starts_with("2.") {
+        return Err(GltfError::at("asset.version", GltfProblem::Version { found: root.asset.version }));
+    }
+    check_extensions(&root)?;
+    check_primitives(&root)?;
+    let mut first = None;
+    root.validate(&root, json::Path::new, &mut |path, error| {
+        let path = path();
+        let part = path.as_str().split(['.', '[']).next().unwrap_or_default();
+        if first.is_none() && GEOMETRY.contains(&part) && is_grave(path.as_str(), error) {
+            first =
+                Some(GltfError::at(path.as_str(), GltfProblem::Invalid { what: format!("invalid value: {error}") }));
+        }
+    });
+    match first {
+        Some(error) => Err(error),
+        None => Ok(gltf::Document::from_json_without_validation(root)),
+    }
+}
+
+/// Bounds are not read, materials neither, and attributes of odd names are passed over.
+fn is_grave(path: &str, error: Error) -> bool {
+    let is_bound = path.ends_with(".min") || path.ends_with(".max");
+    let is_looks = path.contains(".material") || path.contains(".extensions") || path.contains(".targets");
+    let is_odd_name = path.contains(".attributes") && error == Error::Invalid;
+    !(is_bound || is_looks || is_odd_name)
+}
+
+fn check_extensions(root: &json::Root) -> Result<(), GltfError> {
+    let needed = root.extensions_required.iter().find(|name| !LOOKS.iter().any(|looks| name.starts_with(looks)));
+    let Some(name) = needed else { return Ok(()) };
+    let remedy = match name.as_str() {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "write the file without compression (gltf-transform copy decodes it)"
+        }
+        "KHR_mesh_quantization" => "write positions as 32-bit floats (gltf-transform dequantize)",
+        "CESIUM_RTC" => "put the shift into a node's translation",
+        _ => "write the file without it",
+    };
+    Err(GltfError::at("extensionsRequired", GltfProblem::Extension { name: name.clone(), remedy }))
+}
+
+/// The crate's own validation looks accessors up before it has checked their index.
+fn check_primitives(root: &json::Root) -> Result<(), GltfError> {
+    for (mesh_at, mesh) in root.meshes.iter().enumerate() {
+        for (at, primitive) in mesh.primitives.iter().enumerate() {
+            let used = primitive.attributes.values().chain(&primitive.indices);
+            if let Some(accessor) = used.map(|accessor| accessor.value()).find(|&index| index >= root.accessors.len()) {
+                let place = format!("meshes[{mesh_at}].primitives[{at}]");
+                let error = GltfError::at(place, missing("accessor", accessor, root.accessors.len()));
+                return Err(GltfError { object: mesh.name.clone(), ..error });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// An accessor of three floats whose bytes are all there.
+pub(super) fn positions(root: &json::Root, index: usize, buffers: &mut Buffers<'_>) -> Result<(), GltfError> {
+    let accessor = accessor(root, index)?;
+    let is_float = matches!(accessor.component_type, Checked::Valid(GenericComponentType(ComponentType::F32)))
+        && accessor.type_ == Checked::Valid(Type::Vec3);
+    if !is_float {
+        let expected = "three 32-bit floats (VEC3, FLOAT)";
+        return Err(at_accessor(index, GltfProblem::AccessorType { found: described(accessor), expected }));
+    }
+    check_bytes(root, index, accessor, buffers)
+}
+
+/// An accessor of unsigned whole numbers whose bytes are all there.
+pub(super) fn indices(root: &json::Root, index: usize, buffers: &mut Buffers<'_>) -> Result<(), GltfError> {
+    let accessor = accessor(root, index)?;
+    let is_unsigned = matches!(
+        accessor.component_type,
+        Checked::Valid(GenericComponentType(ComponentType::U8 | ComponentType::U16 | ComponentType::U32))
+    );
+    if accessor.type_ != Checked::Valid(Type::Scalar) || !is_unsigned {
+        let expected = "unsigned whole numbers (SCALAR, UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT)";
+        return Err(at_accessor(index, GltfProblem::AccessorType { found: described(accessor), expected }));
+    }
+    check_bytes(root, index, accessor, buffers)
+}
+
+fn accessor(root: &json::Root, index: usize) -> Result<&json::Accessor, GltfError> {
+    let count = root.accessors.len();
+    root.accessors.get(index).ok_or_else(|| at_accessor(index, missing("accessor", index, count)))
+}
+
+fn at_accessor(index: usize, problem: GltfProblem) -> GltfError {
+    GltfError::at(format!("accessors[{index}]"), problem)
+}
+
+fn described(accessor: &json::Accessor) -> String {
+    let component = match accessor.component_type {
+        Checked::Valid(GenericComponentType(kind)) => format!("{kind:?}"),
+        Checked::Invalid => "of unknown components".to_owned(),
+    };
+    let dimensions = match accessor.type_ {
+        Checked::Valid(kind) => format!("{kind:?}"),
+        Checked::Invalid => "of unknown type".to_owned(),
+    };
+    format!("{dimensions} {component}")
+}
+
+fn check_bytes(
+    root: &json::Root,
+    index: usize,
+    accessor: &json::Accessor,
+    buffers: &mut Buffers<'_>,
+) -> Result<(), GltfError> {
+    let (Checked::Valid(kind), Checked::Valid(component)) = (accessor.type_, accessor.component_type) else {
+        return Err(at_accessor(index, GltfProblem::Invalid { what: "accessor of unknown type".to_owned() }));
+    };
+    let item_bytes = (kind.multiplicity() * component.0.size()) as u64;
+    let count = accessor.count.0;
+    if count == 0 {
+        return Err(at_accessor(index, GltfProblem::Invalid { what: "accessor has no elements".to_owned() }));
+    }
+    let items = |count, offset| Items { count, offset, item_bytes };
+    match accessor.buffer_view {
+        Some(view) => {
+            let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+            items(count, offset).check(root, view.value(), buffers).map_err(|error| named(error, index))?;
+        }
+        None if accessor.sparse.is_none() || count > ZEROS_LIMIT => {
+            let what = format!("accessor of {count} elements has no bufferView");
+            return Err(at_accessor(index, GltfProblem::Invalid { what }));
+        }
+        None => {}
+    }
+    let Some(sparse) = &accessor.sparse else { return Ok(()) };
+    let values = items(sparse.count.0, sparse.values.byte_offset.0);
+    values.check(root, sparse.values.buffer_view.value(), buffers).map_err(|error| named(error, index))?;
+    check_sparse_indices(root, sparse, count, buffers).map_err(|error| named(error, index))
+}
+
+/// Sparse indices must rise, or the crate would wait for one that has passed.
+fn check_sparse_indices(
+    root: &json::Root,
+    sparse: &json::accessor::sparse::Sparse,
+    count: u64,
+    buffers: &mut Buffers<'_>,
+) -> Result<(), GltfError> {
+    let Checked::Valid(IndexComponentType(component)) = sparse.indices.component_type else {
+        return Err(GltfError::at("", GltfProblem::Invalid { what: "sparse indices of unknown type".to_owned() }));
+    };
+    let item_bytes = component.size() as u64;
+    let items = Items { count: sparse.count.0, offset: sparse.indices.byte_offset.0, item_bytes };
+    let Range { bytes, stride } = items.check(root, sparse.indices.buffer_view.value(), buffers)?;
+    let mut lowest = 0;
+    for item in bytes.chunks(stride) {
+        let mut word = [0; 8];
+        word[..item_bytes as usize].copy_from_slice(&item[..item_bytes as usize]);
+        let index = u64::from_le_bytes(word);
+        if index < lowest || index >= count {
+            let what = format!("sparse index {index} does not rise, or is not below {count}");
+            return Err(GltfError::at("", GltfProblem::Invalid { what }));
+        }
+        lowest = index + 1;
+    }
+    Ok(())
+}
+
+fn named(error: GltfError, accessor: usize) -> GltfError {
+    let place = match error.place.as_str() {
+        "" => format!("accessors[{accessor}]"),
+        inner => format!("accessors[{accessor}], {inner}"),
+    };
+    GltfError { place, ..error }
+}
+
+/// Elements in a buffer view.
+struct Items {
+    count: u64,
+    offset: u64,
+    item_bytes: u64,
+}
+
+/// The bytes from the first element to the last.
+struct Range<'b> {
+    bytes: &'b [u8],
+    stride: usize,
+}
+
+impl Items {
+    /// Checks view and buffer, with figures that no file can make overflow.
+    fn check<'b>(
+        &self,
+        root: &json::Root,
+        view_index: usize,
+        buffers: &'b mut Buffers<'_>,
+    ) -> Result<Range<'b>, GltfError> {
+        let at = |problem| GltfError::at(format!("bufferViews[{view_index}]"), problem);
+        let view = root
+            .buffer_views
+            .get(view_index)
+            .ok_or_else(|| at(missing("bufferView", view_index, root.buffer_views.len())))?;
+        let stride = view.byte_stride.map_or(self.item_bytes, |stride| stride.0 as u64);
+        if stride < self.item_bytes || self.count == 0 {
+            let what = format!("byteStride {stride} is smaller than an element, or there are none");
+            return Err(at(GltfProblem::Invalid { what }));
+        }
+        let bytes = u128::from(stride) * u128::from(self.count - 1) + u128::from(self.item_bytes);
+        let (start, end) = (u128::from(self.offset), u128::from(self.offset) + bytes);
+        let length = view.byte_length.0;
+        if end > u128::from(length) {
+            return Err(at(GltfProblem::BeyondEnd { what: "the accessor", end, available: length }));
+        }
+        let buffer_index = view.buffer.value();
+        let count = root.buffers.len();
+        let buffer = root.buffers.get(buffer_index).ok_or_else(|| at(missing("buffer", buffer_index, count)))?;
+        buffers.load(buffer_index, buffer)?;
+        let available = buffers.bytes(buffer_index).unwrap_or_default();
+        let view_start = u128::from(view.byte_offset.map_or(0, |offset| offset.0));
+        if view_start + u128::from(length) > available.len() as u128 {
+            let (end, available) = (view_start + u128::from(length), available.len() as u64);
+            return Err(at(GltfProblem::BeyondEnd { what: "the bufferView", end, available }));
+        }
+        // Both sums lie within the buffer, so they fit in usize.
+        let bytes = &available[(view_start + start) as usize..(view_start + end) as usize];
+        Ok(Range { bytes, stride: stride as usize })
+    }
+}

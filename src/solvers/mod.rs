@@ -30,21 +30,30 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
 
 mod circle;
+mod degeneracy;
 mod elimination;
 mod family;
 mod frame;
+mod general;
+mod normalised;
+mod polish;
 mod polynomial;
 mod poses;
 mod quadrics;
 mod quaternion;
 mod row;
+pub mod primitives;
+pub mod problem;
 pub mod scene;
+mod singular;
 mod triple;
 mod two_angle;
 mod two_triples;
 mod upright;
 
+pub use degeneracy::{Degeneracy, NOT_ISOLATED, WEAK, condition_at};
 pub use family::{Sought, solve_minimal};
+pub use general::{Solution, refine, solve};
 pub use poses::{MOST_POSES, Poses};
 pub use quadrics::{se3_6pt, sim3_7pt};
 pub use row::Row;

@@ -1,8 +1,8 @@
 //! The family's one entry: which solver serves a sample is decided by how its points are spread over the planes.
 
 use super::{
-    Poses, Row, Up, se3_6pt, se3_321, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211, sim3_31111, sim3_pair_5pt,
-    upright_se3_4pt, upright_sim3_5pt,
+    Poses, Row, Up, se3_6pt, se3_321, se3_322, se3_331, se3_332, se3_333, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211,
+    sim3_31111, sim3_pair_5pt, upright_se3_4pt, upright_sim3_5pt,
 };
 
 /// What is unknown of the pose.
@@ -47,6 +47,13 @@ pub fn solve_minimal(sought: &Sought, points_per_plane: &[usize], rows: &[Row]) 
 }
 
 fn rigid(points_per_plane: &[usize], rows: &[Row]) -> Option<Poses> {
+    match points_per_plane {
+        [3, 3, 3] => return rows.try_into().ok().map(se3_333),
+        [3, 3, 2] => return rows.try_into().ok().map(se3_332),
+        [3, 3, 1] => return rows.try_into().ok().map(se3_331),
+        [3, 2, 2] => return rows.try_into().ok().map(se3_322),
+        _ => {}
+    }
     let rows: &[Row; 6] = rows.try_into().ok()?;
     Some(match points_per_plane {
         [3, 2, 1] => se3_321(rows),

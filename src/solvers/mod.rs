@@ -15,6 +15,8 @@
 //! | [`se3_3111`] | (3,1,1,1) | 4 | 2.75 |
 //! | [`se3_pair_4pt`] | (2,2,2), (2,2,1,1), (2,1,1,1,1) | 8 | 4.61, 3.47, 3.14 |
 //! | [`se3_6pt`] | (1,1,1,1,1,1) and any other | 8 | 3.03 |
+//! | [`se3_331`] | (3,3,1) | 4 | 2 |
+//! | [`se3_322`], [`se3_332`], [`se3_333`] | (3,2,2), (3,3,2), (3,3,3) | 4 | 1 |
 //! | [`sim3_3211`] | (3,2,1,1) | 4 | 2.15 |
 //! | [`sim3_31111`] | (3,1,1,1,1) | 4 | 2.06 |
 //! | [`sim3_pair_5pt`] | (2,2,2,1), (2,2,1,1,1), (2,1,1,1,1,1) | 8 | 2.60, 2.52, 2.59 |
@@ -28,25 +30,36 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
 
 mod circle;
+mod degeneracy;
 mod elimination;
 mod family;
 mod frame;
+mod general;
+mod normalised;
+mod polish;
 mod polynomial;
 mod poses;
 mod quadrics;
 mod quaternion;
 mod row;
+pub mod primitives;
+pub mod problem;
 pub mod scene;
+mod singular;
 mod triple;
 mod two_angle;
+mod two_triples;
 mod upright;
 
+pub use degeneracy::{Degeneracy, NOT_ISOLATED, WEAK, condition_at};
 pub use family::{Sought, solve_minimal};
+pub use general::{Solution, refine, solve};
 pub use poses::{MOST_POSES, Poses};
 pub use quadrics::{se3_6pt, sim3_7pt};
 pub use row::Row;
-pub use triple::{se3_321, se3_3111, sim3_3211, sim3_31111};
+pub use triple::{se3_321, se3_322, se3_3111, sim3_3211, sim3_31111};
 pub use two_angle::{se3_pair_4pt, sim3_pair_5pt};
+pub use two_triples::{se3_331, se3_332, se3_333};
 pub use upright::{Up, upright_se3_4pt, upright_sim3_5pt};
 
 /// What vanishes beside quantities of size 1: a diagonal entry of the triangular normals, the area of a triple, the
@@ -104,6 +117,10 @@ mod tests {
             (&[2, 2, 1, 1], 3.469, 0.08),
             (&[2, 1, 1, 1, 1], 3.135, 0.07),
             (&[1, 1, 1, 1, 1, 1], 3.026, 0.07),
+            (&[3, 3, 1], 2.0, 1e-9),
+            (&[3, 2, 2], 1.0, 1e-9),
+            (&[3, 3, 2], 1.0, 1e-9),
+            (&[3, 3, 3], 1.0, 1e-9),
         ] {
             check(&|_| Sought::Rigid, points, average, band);
         }

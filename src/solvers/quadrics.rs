@@ -173,7 +173,6 @@ pub(super) fn three_quadrics(quadrics: &[Quadric; 3]) -> Intersection {
 }
 
 /// Every real common point that any of the three turnings finds; dearer than `three_quadrics`, for single problems.
-#[allow(dead_code)]
 pub(super) fn three_quadrics_thorough(quadrics: &[Quadric; 3]) -> Intersection {
     let mut found = Intersection { points: [[0.0; 4]; MOST_POSES], len: 0, clean: true };
     let Some(quadrics) = orthonormal(quadrics) else { return found };

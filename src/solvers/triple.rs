@@ -3,7 +3,7 @@
 //! ```text
 //! Problem     pose of a sensor from points that lie on planes, three of them on the first plane
 //! Given       se3_321: 6 rows (3,2,1); se3_3111: 6 rows (3,1,1,1); sim3_3211: 7 rows (3,2,1,1);
-//!             sim3_31111: 7 rows (3,1,1,1,1); rows grouped by plane in this order
+//!             sim3_31111: 7 rows (3,1,1,1,1); se3_322: 7 rows (3,2,2); rows grouped by plane in this order
 //! Unknowns    rotation 3, translation 3, and scale s for a similarity: 6 or 7; as many rows
 //! Equations   n . (s R p + t) + d = 0
 //! Method      1. The triple spans a plane of the sensor; with unit normal m of that plane, R m = sigma n1, sigma = +-1.
@@ -14,8 +14,11 @@
 //!                each further row reads  v_x u + v_y w + delta + s (cos .. + sin .. + ..) = 0,  delta = d - v_z d1.
 //!             4. (3,2,1), (3,2,1,1): the difference of the pair's two rows holds neither u, w nor delta: a line and a
 //!                circle for each sigma. (3,1,1,1): two reflections remove u, w. (3,1,1,1,1): three remove u, w, delta.
+//!                (3,2,2): two such equations. The one that cuts the circle more steeply gives two angles, Gauss and Newton
+//!                lay them between both equations, and the angles that leave the smallest misfit are kept.
 //!             5. Similarity: the row that has lost u, w but not delta gives s. Two rows give u, w by substitution.
 //! Solutions   4 at most, 2 for each sigma. (3,2,1): 4 whenever a pose exists; (3,1,1,1): 0, 2 or 4, 2.745 on average;
+//!             (3,2,2): 1, with planes at right angles the twins of mathematics.md 4.5: 2 or 4;
 //!             similarities: those with s > 0, 2.15 and 2.06 on average
 //! Degenerate  collinear triple, normals that do not span space, the pair along m: no pose is returned
 //! Scaling     differences to p_1; every test is relative to lengths in the data
@@ -26,6 +29,7 @@
 use super::circle::on_circle;
 use super::elimination::eliminate;
 use super::frame::Axes;
+use super::two_triples::undecided;
 use super::{Poses, RANK_TOLERANCE, Row};
 use crate::geometry::{Rotation3, Similarity, Vector3};
 
@@ -82,6 +86,34 @@ pub fn se3_3111(rows: &[Row; 6]) -> Poses {
     }
     for sigma in [1.0, -1.0] {
         for turn in turns(&m[2], sigma, m[2][2], size_sq) {
+            poses.push(triple.pose(&m, &turn));
+        }
+    }
+    poses
+}
+
+/// Rigid poses from rows (3,2,2).
+pub fn se3_322(rows: &[Row; 7]) -> Poses {
+    let mut poses = Poses::none();
+    let Some(triple) = Triple::new(rows, Some(&rows[3].normal)) else { return poses };
+    let (first, second) = (rows[4].point - rows[3].point, rows[6].point - rows[5].point);
+    let pairs = [triple.difference(&rows[3], &rows[4]), triple.difference(&rows[5], &rows[6])];
+    let size_sq = first.norm_squared().max(second.norm_squared());
+    let m = [triple.columns(&middle(&rows[5], &rows[6])), triple.columns(&middle(&rows[3], &rows[4]))];
+    if !spans(&m) || !(size_sq > 0.0) {
+        return poses;
+    }
+    let mut best = [(Turn { cos: 1.0, sin: 0.0, sigma: 1.0, scale: 1.0 }, f64::INFINITY); 4];
+    for (slot, sigma) in [(0, 1.0), (2, -1.0)] {
+        for (i, start) in turns_between(&pairs, sigma, size_sq).into_iter().flatten().enumerate() {
+            best[slot + i] = start;
+        }
+    }
+    let least = best.iter().map(|entry| entry.1).fold(f64::INFINITY, f64::min);
+    for (slot, (turn, misfit)) in best.into_iter().enumerate() {
+        // A tangent gives the same angle twice.
+        let twice = slot % 2 == 1 && turn.nearly(&best[slot - 1].0);
+        if misfit.is_finite() && undecided(misfit, least) && !twice {
             poses.push(triple.pose(&m, &turn));
         }
     }
@@ -198,6 +230,11 @@ impl Triple {
 }
 
 impl Turn {
+    /// Whether two angles cannot be told apart: a tangent is met to the square root of the precision only.
+    fn nearly(&self, other: &Turn) -> bool {
+        (self.cos - other.cos).hypot(self.sin - other.sin) < 1e-7
+    }
+
     /// v . R y of a row, or of a combination of rows.
     #[inline]
     fn along(&self, row: &Columns) -> f64 {
@@ -210,6 +247,41 @@ impl Turn {
 fn turns(row: &Columns, sigma: f64, constant: f64, size_sq: f64) -> impl Iterator<Item = Turn> {
     let (angles, len) = on_circle(row[3] + sigma * row[4], row[5] - sigma * row[6], sigma * row[7] + constant, size_sq);
     (0..len).map(move |i| Turn { cos: angles[i][0], sin: angles[i][1], sigma, scale: 1.0 })
+}
+
+/// The row of the point halfway between two points of one plane.
+#[inline]
+fn middle(a: &Row, b: &Row) -> Row {
+    Row { point: (a.point + b.point) * 0.5, ..*a }
+}
+
+/// The angles that come nearest to two equations at once, with the misfit that they leave (a sine).
+fn turns_between(pairs: &[Columns; 2], sigma: f64, size_sq: f64) -> [Option<(Turn, f64)>; 2] {
+    let equations = pairs.map(|row| [row[3] + sigma * row[4], row[5] - sigma * row[6], sigma * row[7]]);
+    let depth = equations.map(|[a, b, g]| a * a + b * b - g * g);
+    let [a, b, g] = equations[usize::from(depth[1] > depth[0])];
+    let radius = a.hypot(b);
+    // Noise may lift the line off the circle: the nearest point is a good start.
+    let (angles, len) = on_circle(a, b, g.clamp(-radius, radius), size_sq);
+    let mut found = [None; 2];
+    for i in 0..len {
+        let [mut cos, mut sin] = angles[i];
+        for _ in 0..3 {
+            let (mut slope_sq, mut product) = (0.0, 0.0);
+            for [a, b, g] in equations {
+                let slope = b * cos - a * sin;
+                slope_sq += slope * slope;
+                product += slope * (a * cos + b * sin + g);
+            }
+            let step = if slope_sq > 0.0 { -product / slope_sq } else { 0.0 };
+            (cos, sin) = (cos - sin * step, sin + cos * step);
+            let norm = cos.hypot(sin);
+            (cos, sin) = (cos / norm, sin / norm);
+        }
+        let misfit_sq: f64 = equations.iter().map(|[a, b, g]| (a * cos + b * sin + g) * (a * cos + b * sin + g)).sum();
+        found[i] = Some((Turn { cos, sin, sigma, scale: 1.0 }, (misfit_sq / size_sq).sqrt()));
+    }
+    found
 }
 
 /// The square of the size that the coefficients of cos and sin have in general; reflections do not change it.

@@ -54,6 +54,14 @@ impl Up {
         self.object.z
     }
 
+    pub(super) fn sensor_axes(&self) -> Axes {
+        self.sensor
+    }
+
+    pub(super) fn object_axes(&self) -> Axes {
+        self.object
+    }
+
     /// The turn by `(cos, sin)` about the vertical, after the verticals have been laid onto each other.
     #[inline]
     pub(super) fn rotation(&self, cos: f64, sin: f64) -> Matrix3<f64> {

@@ -1,0 +1,32 @@
+//! `cityweld solve PROBLEM.json`: all poses of one point-to-plane problem.
+
+use cityweld::solvers::problem::{Refusal, answer_json, solve_json};
+use std::io::Read;
+
+/// Solves the problem in a file (`-`: standard input) and prints the answer; returns the exit status: 0 an answer, 1
+/// degenerate, 2 ill-formed or unreadable.
+pub fn run(path: &str) -> u8 {
+    let text = match read(path) {
+        Ok(text) => text,
+        Err(error) => {
+            eprintln!("cannot read {path}: {error}");
+            return 2;
+        }
+    };
+    let answer = solve_json(&text);
+    println!("{}", answer_json(&answer));
+    match answer {
+        Ok(_) => 0,
+        Err(Refusal::Degenerate(_)) => 1,
+        Err(Refusal::IllFormed(_)) => 2,
+    }
+}
+
+fn read(path: &str) -> std::io::Result<String> {
+    if path != "-" {
+        return std::fs::read_to_string(path);
+    }
+    let mut text = String::new();
+    std::io::stdin().read_to_string(&mut text)?;
+    Ok(text)
+}

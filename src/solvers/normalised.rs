@@ -1,0 +1,271 @@
+//! Rows in units of their own: points about their centroid, planes about the point nearest to all of them.
+//!
+//! Normalising is also where the structural tests stand: they need the same quantities.
+
+use super::degeneracy::Degeneracy;
+use super::singular::Singular;
+use super::{Row, Sought};
+use crate::geometry::Vector3;
+
+/// Sine below which two normals have the same direction, and relative difference below which their offsets agree.
+const SAME_PLANE: f64 = 1e-12;
+
+/// Singular value of the normals, relative to the largest, below which they lie in one plane.
+const NORMAL_RANK: f64 = 1e-10;
+
+/// Spread of the points, relative to their coordinates, below which they coincide.
+const SAME_POINT: f64 = 1e-13;
+
+/// Distance of the planes from their common point, relative to their offsets, below which they are concurrent.
+const CONCURRENT: f64 = 1e-12;
+
+/// Singular value of the points of one plane, in units of the spread, below which they have no extent in a direction.
+const EXTENT: f64 = 1e-11;
+
+/// Directions that the normals hold this weakly do not move the planes' common point: nearly parallel planes must not throw
+/// it far away.
+const NEAR: f64 = 1e-2;
+
+/// A problem in units of its own, past the structural tests.
+pub(super) struct Normalised {
+    pub sought: Sought,
+    /// Unit normals; points about `centroid` in units of `spread`; offsets about `near` in units of `unit`.
+    pub rows: Vec<Row>,
+    /// The normals as a matrix.
+    pub normals: Singular<3>,
+    /// Index of the plane of each row: rows of the same plane share it.
+    plane_of: Vec<usize>,
+    pub centroid: Vector3<f64>,
+    pub spread: f64,
+    pub near: Vector3<f64>,
+    pub unit: f64,
+}
+
+/// A row's normal scaled by a power of two to about 1, its offset likewise, and the rest of the normal's length.
+struct Scaled {
+    normal: Vector3<f64>,
+    offset: f64,
+    length: f64,
+}
+
+impl Normalised {
+    pub(super) fn new(sought: &Sought, rows: &[Row]) -> Result<Normalised, Degeneracy> {
+        let rows = different(rows);
+        if rows.len() < sought.unknowns() {
+            return Err(Degeneracy::TooFewRows { rows: rows.len(), unknowns: sought.unknowns() });
+        }
+        let scaled: Vec<Scaled> = rows.iter().map(scaled).collect();
+        let planes = Planes::of(&scaled);
+        planes.check()?;
+        let points: Vec<Vector3<f64>> = rows.iter().map(|row| row.point).collect();
+        let (centroid, spread) = centred(&points)?;
+        let near = nearest_point(&scaled);
+        let offsets: Vec<f64> = scaled.iter().map(|s| s.about(&near)).collect();
+        let unit = if sought.is_similarity() { planes.size_apart(&offsets)? } else { spread };
+        let rows = (0..rows.len())
+            .map(|r| Row {
+                point: (points[r] - centroid) / spread,
+                normal: planes.normals[r],
+                offset: offsets[r] / unit,
+            })
+            .collect();
+        let normals = Singular::of(&planes.matrix());
+        let plane_of = planes.plane_of;
+        let problem = Normalised { sought: *sought, rows, normals, plane_of, centroid, spread, near, unit };
+        problem.check_points()?;
+        problem.check_motion()?;
+        Ok(problem)
+    }
+
+    /// Every plane supplies at most as many independent rows as its points span dimensions, and one.
+    fn check_points(&self) -> Result<(), Degeneracy> {
+        if matches!(self.sought, Sought::UprightRigid(_) | Sought::UprightSimilarity(_)) {
+            return Ok(());
+        }
+        let (mut rank, mut crowded) = (0, false);
+        for plane in 0..=self.plane_of.iter().copied().max().unwrap_or(0) {
+            let on: Vec<Vector3<f64>> = self.points_of(plane);
+            if on.is_empty() {
+                continue;
+            }
+            let mean = on.iter().sum::<Vector3<f64>>() / on.len() as f64;
+            let size = on.iter().map(|p| p.amax()).fold(1.0, f64::max);
+            let centred: Vec<[f64; 3]> = on.iter().map(|p| (p - mean).into()).collect();
+            let extents = Singular::of(&centred).sorted();
+            rank += (1 + extents.iter().filter(|&&s| s > EXTENT * size).count()).min(3);
+            crowded |= on.len() > 3;
+        }
+        match (rank < self.sought.unknowns(), crowded) {
+            (false, _) => Ok(()),
+            (true, true) => Err(Degeneracy::CrowdedPlane),
+            (true, false) => Err(Degeneracy::CollinearPoints),
+        }
+    }
+
+    /// What is free at one arbitrary rotation is free at every pose.
+    fn check_motion(&self) -> Result<(), Degeneracy> {
+        let turn = crate::geometry::Rotation3::from_euler_angles(0.71, -0.43, 1.27).into_inner();
+        let turn = match &self.sought {
+            Sought::Rigid | Sought::Similarity => turn,
+            Sought::UprightRigid(up) | Sought::UprightSimilarity(up) => up.rotation(0.6, 0.8),
+        };
+        let images: Vec<Vector3<f64>> = self.rows.iter().map(|row| turn * row.point).collect();
+        let normals: Vec<Vector3<f64>> = self.rows.iter().map(|row| row.normal).collect();
+        if super::degeneracy::condition(&self.sought, &images, &normals) < SAME_PLANE {
+            return Err(Degeneracy::FreeMotion);
+        }
+        Ok(())
+    }
+
+    fn points_of(&self, plane: usize) -> Vec<Vector3<f64>> {
+        (0..self.rows.len()).filter(|&r| self.plane_of[r] == plane).map(|r| self.rows[r].point).collect()
+    }
+
+    /// Unit normal (sensor frame) of the largest triangle on one plane, and that plane's normal; `None` where every plane's
+    /// points are collinear.
+    pub(super) fn largest_triangle(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let mut best = (EXTENT, None);
+        for i in 0..self.rows.len() {
+            let on: Vec<usize> = (i + 1..self.rows.len()).filter(|&j| self.plane_of[j] == self.plane_of[i]).collect();
+            for (k, &j) in on.iter().enumerate() {
+                for &l in &on[k + 1..] {
+                    let p = self.rows[i].point;
+                    let across = (self.rows[j].point - p).cross(&(self.rows[l].point - p));
+                    let area = across.norm();
+                    if area > best.0 {
+                        best = (area, Some((across / area, self.rows[i].normal)));
+                    }
+                }
+            }
+        }
+        best.1
+    }
+}
+
+/// The rows without repetition.
+fn different(rows: &[Row]) -> Vec<Row> {
+    let mut out: Vec<Row> = Vec::with_capacity(rows.len());
+    for row in rows {
+        if !out.contains(row) {
+            out.push(*row);
+        }
+    }
+    out
+}
+
+/// Scaling by a power of two is exact.
+fn scaled(row: &Row) -> Scaled {
+    let largest = row.normal.amax();
+    let exponent = (largest.log2().floor() as i32).clamp(-1000, 1000);
+    let factor = 2f64.powi(-exponent);
+    let normal = row.normal * factor;
+    Scaled { normal, offset: row.offset * factor, length: normal.norm() }
+}
+
+impl Scaled {
+    /// Distance of the plane from `x`, with twice the digits in between: products by fused multiply-add, sums with
+    /// their errors kept.
+    fn about(&self, x: &Vector3<f64>) -> f64 {
+        let (mut sum, mut error) = (self.offset, 0.0);
+        for i in 0..3 {
+            let product = self.normal[i] * x[i];
+            let product_error = self.normal[i].mul_add(x[i], -product);
+            let next = sum + product;
+            let part = next - sum;
+            error += (sum - (next - part)) + (product - part) + product_error;
+            sum = next;
+        }
+        (sum + error) / self.length
+    }
+}
+
+/// The planes of the rows.
+struct Planes {
+    normals: Vec<Vector3<f64>>,
+    offsets: Vec<f64>,
+    plane_of: Vec<usize>,
+    planes: usize,
+    directions: usize,
+}
+
+impl Planes {
+    fn of(scaled: &[Scaled]) -> Planes {
+        let normals: Vec<Vector3<f64>> = scaled.iter().map(|s| s.normal / s.length).collect();
+        let offsets: Vec<f64> = scaled.iter().map(|s| s.offset / s.length).collect();
+        let parallel = |a: usize, b: usize| normals[a].cross(&normals[b]).norm() < SAME_PLANE;
+        let same = |a: usize, b: usize| {
+            let sense = if normals[a].dot(&normals[b]) > 0.0 { 1.0 } else { -1.0 };
+            let size = offsets[a].abs() + offsets[b].abs();
+            parallel(a, b) && (offsets[a] - sense * offsets[b]).abs() <= SAME_PLANE * size
+        };
+        let (mut first_of_plane, mut first_of_direction): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+        let mut plane_of = Vec::with_capacity(normals.len());
+        for r in 0..normals.len() {
+            let plane = first_of_plane.iter().position(|&first| same(r, first)).unwrap_or_else(|| {
+                first_of_plane.push(r);
+                first_of_plane.len() - 1
+            });
+            plane_of.push(plane);
+            if !first_of_direction.iter().any(|&first| parallel(r, first)) {
+                first_of_direction.push(r);
+            }
+        }
+        let (planes, directions) = (first_of_plane.len(), first_of_direction.len());
+        Planes { normals, offsets, plane_of, planes, directions }
+    }
+
+    fn check(&self) -> Result<(), Degeneracy> {
+        if self.planes < 3 {
+            return Err(Degeneracy::TooFewPlanes);
+        }
+        if self.directions < 3 {
+            return Err(Degeneracy::ParallelPlanes);
+        }
+        let singular = Singular::of(&self.matrix());
+        if singular.smallest() < NORMAL_RANK * singular.largest() {
+            return Err(Degeneracy::CoplanarNormals);
+        }
+        Ok(())
+    }
+
+    fn matrix(&self) -> Vec<[f64; 3]> {
+        self.normals.iter().map(|&n| n.into()).collect()
+    }
+
+    /// Root mean square of the offsets about the common point; refused where the planes do meet there.
+    fn size_apart(&self, offsets: &[f64]) -> Result<f64, Degeneracy> {
+        let foot = Vector3::from(Singular::of(&self.matrix()).least_squares(offsets, 0.0));
+        let apart = offsets.iter().zip(&self.normals).map(|(e, n)| (e - n.dot(&foot)).abs()).fold(0.0, f64::max);
+        let largest = self.offsets.iter().map(|d| d.abs()).fold(0.0, f64::max);
+        if apart <= CONCURRENT * largest || self.planes < 4 {
+            return Err(Degeneracy::ConcurrentPlanes);
+        }
+        Ok((offsets.iter().map(|e| e * e).sum::<f64>() / offsets.len() as f64).sqrt())
+    }
+}
+
+/// Centroid and root mean square distance from it.
+fn centred(points: &[Vector3<f64>]) -> Result<(Vector3<f64>, f64), Degeneracy> {
+    let count = points.len() as f64;
+    let largest = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
+    // Dividing first keeps the largest finite numbers finite.
+    let centroid = points.iter().map(|p| p / count).sum::<Vector3<f64>>();
+    let extent = points.iter().map(|p| (p - centroid).amax()).fold(0.0, f64::max);
+    if !(extent > 0.0 && extent > SAME_POINT * largest) {
+        return Err(Degeneracy::OnePoint);
+    }
+    let mean_sq = points.iter().map(|p| ((p - centroid) / extent).norm_squared()).sum::<f64>() / count;
+    Ok((centroid, extent * mean_sq.sqrt()))
+}
+
+/// The point nearest to all planes, by least squares; two rounds, so that the second starts near.
+fn nearest_point(scaled: &[Scaled]) -> Vector3<f64> {
+    let matrix: Vec<[f64; 3]> = scaled.iter().map(|s| (s.normal / s.length).into()).collect();
+    let singular = Singular::of(&matrix);
+    let mut near = Vector3::zeros();
+    for _ in 0..2 {
+        let offsets: Vec<f64> = scaled.iter().map(|s| s.about(&near)).collect();
+        near -= Vector3::from(singular.least_squares(&offsets, NEAR));
+    }
+    near
+}

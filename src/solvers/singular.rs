@@ -1,0 +1,116 @@
+//! Singular values by one-sided Jacobi rotations: slow for large matrices, accurate for the smallest value of small ones.
+
+/// Sweeps over all pairs of columns; eight usually suffice.
+const MOST_SWEEPS: usize = 40;
+
+/// Columns whose cosine is below this count as orthogonal.
+const ORTHOGONAL: f64 = 1e-15;
+
+/// `A V = U S`: the rotated columns `u_j s_j`, and V.
+pub(super) struct Singular<const K: usize> {
+    columns: [Vec<f64>; K],
+    turned: [[f64; K]; K],
+    /// Lengths of the columns, in their order (not sorted).
+    values: [f64; K],
+}
+
+impl<const K: usize> Singular<K> {
+    pub(super) fn of(rows: &[[f64; K]]) -> Singular<K> {
+        let mut columns: [Vec<f64>; K] = std::array::from_fn(|j| rows.iter().map(|row| row[j]).collect());
+        let mut turned = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
+        for _ in 0..MOST_SWEEPS {
+            let mut rotated = false;
+            for p in 0..K {
+                for q in p + 1..K {
+                    rotated |= rotate(&mut columns, &mut turned, p, q);
+                }
+            }
+            if !rotated {
+                break;
+            }
+        }
+        let values = std::array::from_fn(|j| dot(&columns[j], &columns[j]).sqrt());
+        Singular { columns, turned, values }
+    }
+
+    pub(super) fn largest(&self) -> f64 {
+        self.values.iter().copied().fold(0.0, f64::max)
+    }
+
+    pub(super) fn smallest(&self) -> f64 {
+        self.values.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Descending.
+    pub(super) fn sorted(&self) -> [f64; K] {
+        let mut sorted = self.values;
+        sorted.sort_by(|a, b| b.total_cmp(a));
+        sorted
+    }
+
+    /// The shortest x with least `|A x - b|`, directions with a singular value below `tolerance` times the largest left out.
+    pub(super) fn least_squares(&self, b: &[f64], tolerance: f64) -> [f64; K] {
+        let floor = tolerance * self.largest();
+        let mut x = [0.0; K];
+        for j in 0..K {
+            if self.values[j] > floor && self.values[j] > 0.0 {
+                let share = dot(&self.columns[j], b) / self.values[j] / self.values[j];
+                for i in 0..K {
+                    x[i] += self.turned[j][i] * share;
+                }
+            }
+        }
+        x
+    }
+}
+
+fn rotate<const K: usize>(columns: &mut [Vec<f64>; K], turned: &mut [[f64; K]; K], p: usize, q: usize) -> bool {
+    let (pp, qq) = (dot(&columns[p], &columns[p]), dot(&columns[q], &columns[q]));
+    let pq = dot(&columns[p], &columns[q]);
+    if pq == 0.0 || pq.abs() <= ORTHOGONAL * (pp * qq).sqrt() {
+        return false;
+    }
+    let zeta = (qq - pp) / (2.0 * pq);
+    let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
+    let cos = 1.0 / tangent.hypot(1.0);
+    let sin = cos * tangent;
+    let (left, right) = columns.split_at_mut(q);
+    for (a, b) in left[p].iter_mut().zip(&mut right[0]) {
+        (*a, *b) = (cos * *a - sin * *b, sin * *a + cos * *b);
+    }
+    for i in 0..K {
+        let (a, b) = (turned[p][i], turned[q][i]);
+        (turned[p][i], turned[q][i]) = (cos * a - sin * b, sin * a + cos * b);
+    }
+    true
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_singular_value_keeps_its_digits() {
+        // Orthogonal columns of lengths 3, 1e-9 and 2, mixed by a rotation in the plane of the first two.
+        let (c, s) = (0.6, 0.8);
+        let rows = [[3.0 * c, -3.0 * s, 0.0], [1e-9 * s, 1e-9 * c, 0.0], [0.0, 0.0, 2.0], [0.0, 0.0, 0.0]];
+        let sorted = Singular::of(&rows).sorted();
+        assert!((sorted[0] - 3.0).abs() < 1e-15 && (sorted[1] - 2.0).abs() < 1e-15);
+        assert!((sorted[2] / 1e-9 - 1.0).abs() < 1e-6, "{sorted:?}");
+    }
+
+    #[test]
+    fn least_squares_leaves_a_residual_orthogonal_to_the_columns() {
+        let rows = [[1.0, 2.0], [3.0, -1.0], [0.5, 0.25], [2.0, 2.0]];
+        let b = [1.0, 2.0, 3.0, 4.0];
+        let x = Singular::of(&rows).least_squares(&b, 1e-13);
+        for j in 0..2 {
+            let slope: f64 = rows.iter().zip(b).map(|(row, b)| row[j] * (row[0] * x[0] + row[1] * x[1] - b)).sum();
+            assert!(slope.abs() < 1e-14);
+        }
+    }
+}

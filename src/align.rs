@@ -113,7 +113,7 @@ pub fn search(scene: &Scene, seed: u64, progress: Progress<'_>) -> Vec<Finalist>
     let z = Vector3::z();
     let Some(up) = crate::solvers::Up::new(&z, &z) else { return Vec::new() };
     let problem = PoseSearch { pairing, scorer: &scorer, up, panel: scene.votes.panel(200), gate_m: COARSE_GATE_M };
-    let options = RansacOptions { seed, keep: 60, fewest_samples: 2048, most_samples: 65_536, enough_hits: 10 };
+    let options = RansacOptions { seed, keep: 60, fewest_samples: 8192, most_samples: 65_536, enough_hits: 10 };
     let (ranked, samples) = ransac(&problem, &options, |n| progress("search", n, 65_536));
     eprintln!(
         "samples {samples} kept {} best {:?}",

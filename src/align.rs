@@ -2,7 +2,7 @@
 
 use crate::city::CityModel;
 use crate::correspondence::{
-    ErrorModel, FacetField, Pairing, PoseSearch, Refined, Scorer, Votes, largest_shift, refine, slide,
+    ErrorModel, FacetField, Pairing, PoseSearch, Refined, Scorer, Sightlines, Votes, largest_shift, refine, slide,
 };
 use crate::geometry::{Point3, Similarity, Start, Vector3};
 use crate::imagery::LiftedSuperpixels;
@@ -54,6 +54,7 @@ pub struct Scene<'a> {
     pub planes: CityPlanes,
     pub field: FacetField,
     pub seen: Vec<bool>,
+    pub sightlines: Sightlines,
     pub start: Start,
     pub city: &'a CityModel,
 }
@@ -82,13 +83,13 @@ impl<'a> Scene<'a> {
             let (l, h) = (c[0].inf(&c[1]).inf(&c[2]), c[0].sup(&c[1]).sup(&c[2]));
             (0..2).all(|k| l[k] <= high[k] && h[k] >= low[k])
         };
-        let exposed = exposed_triangles(city, near);
+        let (exposed, rays) = exposed_triangles(city, near);
         let field = FacetField::new(city, &low, &high, COARSE_GATE_M * 1.6, |t| exposed[t as usize]);
         let mut seen = vec![false; planes.planes.len()];
         for t in &field.triangles {
             seen[planes.of_facet(t.facet).0 as usize] = true;
         }
-        Scene { patches, votes, planes, field, seen, start, city }
+        Scene { patches, votes, planes, field, seen, sightlines: Sightlines { rays }, start, city }
     }
 }
 

@@ -5,6 +5,7 @@ mod pairing;
 mod refine;
 mod scoring;
 mod search;
+mod sight;
 mod slide;
 mod votes;
 
@@ -13,5 +14,6 @@ pub use pairing::{Pair, Pairing, Sample};
 pub use refine::{ErrorModel, Refined, refine};
 pub use scoring::{Mover, Scorer};
 pub use search::{PoseSearch, largest_shift};
+pub use sight::Sightlines;
 pub use slide::slide;
 pub use votes::{LevelPatch, Votes};

@@ -35,6 +35,10 @@ pub struct Votes {
     pub patches: Vec<LevelPatch>,
     /// Points of the patches, patch by patch, then loose points that cameras saw; level frame.
     pub probes: Vec<Probe>,
+    /// Where the cameras stood; level frame.
+    pub cameras: Vec<Point3<f64>>,
+    /// For each probe the nearest and the farthest camera that saw it (indices into `cameras`).
+    pub viewers: Vec<[Option<u32>; 2]>,
     /// How many of the probes belong to patches.
     pub firm: usize,
     /// Weight of each probe: those of patches add up to 1, loose ones have none.
@@ -70,6 +74,8 @@ impl Votes {
             center_in_city: city_from_sfm.apply(&middle),
             patches: Vec::new(),
             probes: Vec::new(),
+            cameras: patches.cameras.iter().map(|c| level_from_sfm.apply(c)).collect(),
+            viewers: Vec::new(),
             firm: 0,
             weights: Vec::new(),
             point_of: Vec::new(),
@@ -80,6 +86,7 @@ impl Votes {
         votes.firm = votes.probes.len();
         votes.weigh();
         votes.take_loose_points(patches);
+        votes.viewers = votes.point_of.iter().map(|&i| patches.viewers[i as usize]).collect();
         votes.radius_m = votes.horizontal_radius();
         votes
     }

@@ -20,8 +20,9 @@ const REACH_M: f64 = 40.0;
 /// Larger triangles are looked at from three places.
 const LARGE_TRIANGLE_M2: f64 = 4.0;
 
-/// For each triangle of `city` whether it is exposed; those for which `ask` does not hold are not looked at (`false`).
-pub fn exposed_triangles(city: &CityModel, ask: impl Fn(u32) -> bool + Sync) -> Vec<bool> {
+/// For each triangle of `city` whether it is exposed; those for which `ask` does not hold are not looked at (`false`). Besides, the
+/// triangles that were asked about as obstacles.
+pub fn exposed_triangles(city: &CityModel, ask: impl Fn(u32) -> bool + Sync) -> (Vec<bool>, RayCaster) {
     let asked: Vec<u32> = (0..city.triangles.len() as u32).filter(|&t| ask(t)).collect();
     let corners = |t: u32| city.triangles[t as usize].map(|v| city.vertices[v as usize]);
     let mut facet_of = vec![0u32; city.triangles.len()];
@@ -48,7 +49,7 @@ pub fn exposed_triangles(city: &CityModel, ask: impl Fn(u32) -> bool + Sync) -> 
     for (&t, flag) in asked.iter().zip(flags) {
         exposed[t as usize] = flag;
     }
-    exposed
+    (exposed, rays)
 }
 
 /// True where more than half of `count` answers are yes; asks no more of them than it must.

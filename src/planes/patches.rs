@@ -47,6 +47,10 @@ pub struct Patches {
     /// Mean direction from each of them to the cameras that saw it (or the file's own normal), any length; zero where
     /// neither is known.
     pub views: Vec<Vector3<f64>>,
+    /// Centres of the cameras, sfm frame.
+    pub cameras: Vec<Point3<f64>>,
+    /// For each supporting point the nearest and the farthest camera that saw it.
+    pub viewers: Vec<[Option<u32>; 2]>,
     pub patches: Vec<Patch>,
     /// Median standard deviation of points across their local planes, sfm units.
     pub noise: f64,
@@ -105,6 +109,8 @@ pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, opti
     let regions = grower.grow(options.fewest_points);
     found.patches = regions.into_iter().filter_map(|members| patch(&found.points, members, &views)).collect();
     found.views = views;
+    found.cameras = r.images.iter().map(|image| image.center()).collect();
+    found.viewers = found.support.iter().map(|&p| viewers(r, p, &found.cameras)).collect();
     found
 }
 
@@ -167,6 +173,16 @@ fn outward_hints(r: &Reconstruction, support: &[PointIndex]) -> Vec<Vector3<f64>
         _ => toward_cameras(p),
     };
     support.iter().map(hint).collect()
+}
+
+/// The nearest and the farthest of the cameras that saw a point.
+fn viewers(r: &Reconstruction, p: PointIndex, cameras: &[Point3<f64>]) -> [Option<u32>; 2] {
+    let place = r.points[p.0 as usize];
+    let distance = |i: &u32| (cameras[*i as usize] - place).norm_squared();
+    let seen_by = || r.track(p).iter().map(|(image, _)| image.0);
+    let nearest = seen_by().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let farthest = seen_by().max_by(|a, b| distance(a).total_cmp(&distance(b)));
+    [nearest, farthest.filter(|_| farthest != nearest)]
 }
 
 /// The patch of a region; `None` where its points lie on a line.

@@ -1,17 +1,13 @@
 //! The main job on one page: patches and planes, search, refinement, verdict.
 
 use crate::city::CityModel;
-use crate::correspondence::{
-    ErrorModel, FacetField, Pairing, PoseSearch, Refined, Scorer, Sightlines, Votes, largest_shift, refine, slide,
-};
-use crate::geometry::{Point3, Similarity, Start, Vector3};
+use crate::correspondence::{Contender, Contest, ProbeOnPlane, Scene, Scorer, contest, refiner};
+use crate::geometry::{Similarity, Start, Vector3};
 use crate::imagery::LiftedSuperpixels;
-use crate::planes::{
-    CityPlanes, PatchOptions, Patches, PlaneId, Upright, city_planes, estimate_up, exposed_triangles, patches,
-};
+use crate::planes::{PatchOptions, Patches, Upright, estimate_up, patches};
 use crate::reconstruction::Reconstruction;
-use crate::robust::{RansacOptions, ransac};
-use crate::verdict::Alignment;
+use crate::robust::{Chart, Matrix7};
+use crate::verdict::{Alignment, Hold, PlaneEvidence, Rival, SearchSummary, Support, freedoms, judge};
 
 /// Which way is up in the reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -39,148 +35,6 @@ pub struct AlignOptions {
 /// A stage of the alignment, told to whoever watches: its name and how much of it is done.
 pub type Progress<'a> = &'a (dyn Fn(&'static str, usize, usize) + Sync);
 
-/// A pose that survived to the end.
-#[derive(Clone, Debug)]
-pub struct Finalist {
-    pub refined: Refined,
-    pub score: f64,
-    pub hits: usize,
-}
-
-/// Everything that the stages before the search prepare.
-pub struct Scene<'a> {
-    pub patches: Patches,
-    pub votes: Votes,
-    pub planes: CityPlanes,
-    pub field: FacetField,
-    pub seen: Vec<bool>,
-    pub sightlines: Sightlines,
-    pub start: Start,
-    pub city: &'a CityModel,
-}
-
-impl<'a> Scene<'a> {
-    pub fn prepare(
-        city: &'a CityModel,
-        reconstruction: &Reconstruction,
-        superpixels: Option<&LiftedSuperpixels>,
-        options: &AlignOptions,
-    ) -> Scene<'a> {
-        let start = Start { city_from_sfm: options.start.city_from_sfm.relative_to(&city.origin), ..options.start };
-        let patches = patches(reconstruction, superpixels, &PatchOptions::default());
-        let guess =
-            Upright { up: start.city_from_sfm.rotation.inverse() * Vector3::z(), sigma_rad: start.tilt_sigma_rad };
-        let upright = match options.up {
-            Up::Auto => estimate_up(&patches.patches, &guess),
-            Up::None => guess,
-            Up::Given(up) => Upright { up: up.normalize(), sigma_rad: 0.0 },
-        };
-        let votes = Votes::new(&patches, &start, &upright);
-        let (low, high) = reach_box(&votes, &start);
-        let planes = city_planes(city);
-        let near = |t: u32| {
-            let c = city.triangles[t as usize].map(|v| city.vertices[v as usize]);
-            let (l, h) = (c[0].inf(&c[1]).inf(&c[2]), c[0].sup(&c[1]).sup(&c[2]));
-            (0..2).all(|k| l[k] <= high[k] && h[k] >= low[k])
-        };
-        let (exposed, rays) = exposed_triangles(city, near);
-        let field = FacetField::new(city, &low, &high, COARSE_GATE_M * 1.6, |t| exposed[t as usize]);
-        let mut seen = vec![false; planes.planes.len()];
-        for t in &field.triangles {
-            seen[planes.of_facet(t.facet).0 as usize] = true;
-        }
-        Scene { patches, votes, planes, field, seen, sightlines: Sightlines { rays }, start, city }
-    }
-}
-
-const COARSE_GATE_M: f64 = 1.5;
-
-fn reach_box(votes: &Votes, start: &Start) -> (Point3<f64>, Point3<f64>) {
-    let grow = (3.0 * start.log_scale_sigma).exp();
-    let side = 1.2 * votes.radius_m * grow + 3.0 * start.position_sigma_m + 2.0;
-    let mut heights: Vec<f64> = votes.probes.iter().map(|p| p.position.z).collect();
-    heights.sort_by(f64::total_cmp);
-    let at = |share: f64| heights.get((heights.len() as f64 * share) as usize).copied().unwrap_or(0.0);
-    let (bottom, top) = (at(0.002).min(0.0) * grow, at(0.998).max(0.0) * grow);
-    let rise = 3.0 * start.height_sigma_m + 2.0;
-    let c = votes.center_in_city;
-    (Point3::new(c.x - side, c.y - side, c.z + bottom - rise), Point3::new(c.x + side, c.y + side, c.z + top + rise))
-}
-
-pub fn search(scene: &Scene, seed: u64, progress: Progress<'_>) -> Vec<Finalist> {
-    let scorer = Scorer { votes: &scene.votes, field: &scene.field, start: scene.start };
-    let seen = |p: PlaneId| scene.seen[p.0 as usize];
-    let pairing = Pairing::new(&scene.votes, &scene.planes, &scene.start, None, seen);
-    let z = Vector3::z();
-    let Some(up) = crate::solvers::Up::new(&z, &z) else { return Vec::new() };
-    let problem = PoseSearch { pairing, scorer: &scorer, up, panel: scene.votes.panel(200), gate_m: COARSE_GATE_M };
-    let options = RansacOptions { seed, keep: 60, fewest_samples: 8192, most_samples: 65_536, enough_hits: 10 };
-    let (ranked, samples) = ransac(&problem, &options, |n| progress("search", n, 65_536));
-    eprintln!(
-        "samples {samples} kept {} best {:?}",
-        ranked.len(),
-        ranked.iter().take(5).map(|r| (r.score, r.hits)).collect::<Vec<_>>()
-    );
-    let errors = ErrorModel { point_sigma_m: scene.votes.noise_m.max(0.01), plane_sigma_m: 0.05 };
-    let votes = &scene.votes;
-    let stages = [
-        Stage { panel: votes.panel(400), gates_m: &[1.5, 1.5, 1.2, 1.0, 0.8], score_gate_m: 0.7, keep: 16 },
-        Stage { panel: votes.panel(1500), gates_m: &[0.8, 0.7, 0.6, 0.5, 0.5], score_gate_m: 0.4, keep: 6 },
-        Stage {
-            panel: (0..votes.probes.len() as u32).collect(),
-            gates_m: &[0.5, 0.4, 0.35, 0.3, 0.3, 0.3],
-            score_gate_m: 0.3,
-            keep: 6,
-        },
-    ];
-    let mut pool: Vec<Finalist> = ranked
-        .iter()
-        .map(|r| {
-            let refined = refine(&scorer, &scene.planes, &[], &r.pose, &[], &errors);
-            Finalist { refined, score: r.score, hits: r.hits }
-        })
-        .collect();
-    for stage in &stages {
-        for f in &mut pool {
-            let run = |pose: &Similarity| refine(&scorer, &scene.planes, &stage.panel, pose, stage.gates_m, &errors);
-            let first = run(&f.refined.city_from_level);
-            let spectrum = first.equations.spectrum();
-            let slid =
-                slide(&scorer, &stage.panel, &first.chart, &spectrum, &first.city_from_level, stage.score_gate_m);
-            f.refined = if slid == first.city_from_level { first } else { run(&slid) };
-            let p = &f.refined.city_from_level;
-            f.score = if stage.panel.len() >= votes.firm {
-                scorer.share(p, stage.score_gate_m)
-            } else {
-                scorer.panel_share(&stage.panel, p, stage.score_gate_m)
-            } - scorer.prior_cost(p);
-        }
-        pool = distinct(pool, votes.radius_m, stage.keep);
-    }
-    pool
-}
-
-struct Stage {
-    panel: Vec<u32>,
-    gates_m: &'static [f64],
-    score_gate_m: f64,
-    keep: usize,
-}
-
-fn distinct(mut pool: Vec<Finalist>, radius_m: f64, keep: usize) -> Vec<Finalist> {
-    pool.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut kept: Vec<Finalist> = Vec::new();
-    for f in pool {
-        let same = |k: &Finalist| largest_shift(&k.refined.city_from_level, &f.refined.city_from_level, radius_m) < 0.8;
-        match kept.iter_mut().find(|k| same(k)) {
-            Some(k) => k.hits += f.hits,
-            None => kept.push(f),
-        }
-    }
-    kept.truncate(keep);
-    kept
-}
-
 /// Finds where the reconstruction stands in the city and judges it. `superpixels` are the evidence of labels or
 /// photographs; without them planar clusters are taken out of the cloud itself.
 pub fn align(
@@ -190,8 +44,157 @@ pub fn align(
     options: &AlignOptions,
     progress: Progress<'_>,
 ) -> Alignment {
-    let scene = Scene::prepare(city, reconstruction, superpixels, options);
-    let finalists = search(&scene, options.seed, progress);
-    let _ = (finalists, Similarity::identity());
-    unimplemented!()
+    progress("patches", 0, 1);
+    let patches = patches(reconstruction, superpixels, &PatchOptions::default());
+    let start = local_start(options, city);
+    let upright = upright(&patches, &start, options.up);
+    progress("city", 0, 1);
+    let scene = Scene::new(city, &patches, &start, &upright);
+    let scale = options.fixed_scale.map(|s| s / start.city_from_sfm.scale);
+    let contest = contest(&scene, scale, options.seed, &|done, of| progress("search", done, of));
+    Outcome { city, patches: &patches, scene: &scene, contest: &contest, scale_is_fixed: scale.is_some() }.told(options)
+}
+
+/// The start about the city's local origin.
+fn local_start(options: &AlignOptions, city: &CityModel) -> Start {
+    Start { city_from_sfm: options.start.city_from_sfm.relative_to(&city.origin), ..options.start }
+}
+
+fn upright(patches: &Patches, start: &Start, up: Up) -> Upright {
+    let guess = Upright { up: start.city_from_sfm.rotation.inverse() * Vector3::z(), sigma_rad: start.tilt_sigma_rad };
+    match up {
+        Up::Auto => estimate_up(&patches.patches, &guess),
+        Up::None => guess,
+        Up::Given(up) => Upright { up: up.try_normalize(0.0).unwrap_or(guess.up), sigma_rad: 0.0 },
+    }
+}
+
+/// What the stages found, to be turned into an [`Alignment`].
+struct Outcome<'a> {
+    city: &'a CityModel,
+    patches: &'a Patches,
+    scene: &'a Scene,
+    contest: &'a Contest,
+    scale_is_fixed: bool,
+}
+
+impl Outcome<'_> {
+    fn told(&self, options: &AlignOptions) -> Alignment {
+        let contenders = &self.contest.contenders;
+        let rivals: Vec<Rival> = contenders.iter().map(|c| self.rival(c)).collect();
+        let rows = contenders.first().map_or(Vec::new(), |best| self.rows(best));
+        let hold = self.hold(contenders.first(), &rows, options);
+        let ruling = judge(&rivals, &hold, !self.patches.cameras.is_empty());
+        Alignment {
+            verdict: ruling.verdict,
+            reason: ruling.reason,
+            best: rivals.first().map(|r| r.city_from_sfm),
+            alternatives: ruling.alternatives,
+            origin: self.city.origin,
+            center: hold.chart.center,
+            freedoms: if rivals.is_empty() { Vec::new() } else { freedoms(&hold) },
+            covariance: hold.covariance(),
+            support: self.support(&rows),
+            evidence: self.evidence(&rows),
+            search: SearchSummary {
+                solver: self.contest.solver.to_owned(),
+                samples: self.contest.samples as u64,
+                seed: options.seed,
+            },
+            warnings: self.warnings(),
+        }
+    }
+
+    fn rival(&self, contender: &Contender) -> Rival {
+        let local = contender.refined.city_from_level * self.scene.votes.level_from_sfm;
+        let city_from_sfm = Similarity { translation: local.translation + self.city.origin, ..local };
+        Rival { city_from_sfm, share: contender.share, blocked: contender.blocked, balance: contender.balance() }
+    }
+
+    /// Which points lie on which planes in the best pose.
+    fn rows(&self, best: &Contender) -> Vec<ProbeOnPlane> {
+        let scorer = Scorer { votes: &self.scene.votes, field: &self.scene.field, start: self.scene.start };
+        let all: Vec<u32> = (0..self.scene.votes.probes.len() as u32).collect();
+        let refiner = refiner(self.scene, &scorer, self.scale_is_fixed);
+        refiner.probes_on_planes(&all, &best.refined.city_from_level, self.scene.unit_m)
+    }
+
+    fn hold(&self, best: Option<&Contender>, rows: &[ProbeOnPlane], options: &AlignOptions) -> Hold {
+        let chart = best.map_or(
+            Chart { center: self.scene.votes.center_in_city, radius: self.scene.votes.radius_m.max(1e-3) },
+            |best| best.refined.chart,
+        );
+        let scorer = Scorer { votes: &self.scene.votes, field: &self.scene.field, start: self.scene.start };
+        let refiner = refiner(self.scene, &scorer, self.scale_is_fixed);
+        let of_plane = |rows: &[ProbeOnPlane]| refiner.equations_of_plane(&chart, rows).full();
+        let by_plane = rows.chunk_by(|a, b| a.plane == b.plane).map(of_plane).collect();
+        let start = start_information(&options.start, chart.radius);
+        let chart = Chart { center: chart.center + self.city.origin, ..chart };
+        Hold { chart, by_plane, start, scale_is_fixed: self.scale_is_fixed }
+    }
+
+    fn support(&self, rows: &[ProbeOnPlane]) -> Support {
+        let mut across: Vec<f64> = rows.iter().map(|r| r.hit.across_m.abs()).collect();
+        across.sort_by(f64::total_cmp);
+        Support {
+            points: self.scene.votes.firm,
+            trusted_points: rows.len(),
+            planes: rows.chunk_by(|a, b| a.plane == b.plane).count(),
+            rms_m: rms(&across),
+            median_m: across.get(across.len() / 2).copied().unwrap_or(0.0),
+        }
+    }
+
+    /// The planes by falling number of points.
+    fn evidence(&self, rows: &[ProbeOnPlane]) -> Vec<PlaneEvidence> {
+        let of_plane = |rows: &[ProbeOnPlane]| {
+            let plane = &self.scene.planes.planes[rows[0].plane.0 as usize];
+            let across: Vec<f64> = rows.iter().map(|r| r.hit.across_m).collect();
+            PlaneEvidence {
+                plane: rows[0].plane.0,
+                object: self.city.object_name(plane.object).to_owned(),
+                points: rows.len(),
+                rms_m: rms(&across),
+            }
+        };
+        let mut evidence: Vec<PlaneEvidence> = rows.chunk_by(|a, b| a.plane == b.plane).map(of_plane).collect();
+        evidence.sort_by(|a, b| b.points.cmp(&a.points).then(a.plane.cmp(&b.plane)));
+        evidence
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let Patches { too_few_points, not_planar, support, patches, .. } = self.patches;
+        if *too_few_points + *not_planar > 0 {
+            warnings.push(format!(
+                "superpixels without a plane: {too_few_points} with too few points, {not_planar} not planar"
+            ));
+        }
+        if patches.is_empty() {
+            warnings.push(format!("no planar group among {} points", support.len()));
+        }
+        warnings
+    }
+}
+
+/// The start's sigmas as information in the chart's unknowns, 1 / m^2.
+fn start_information(start: &Start, radius: f64) -> Matrix7 {
+    let sigmas = [
+        radius * start.tilt_sigma_rad,
+        radius * start.tilt_sigma_rad,
+        radius * start.heading_sigma_rad,
+        start.position_sigma_m,
+        start.position_sigma_m,
+        start.height_sigma_m,
+        radius * start.log_scale_sigma,
+    ];
+    let information = sigmas.map(|s| s.max(SMALLEST_SIGMA_M).powi(-2));
+    Matrix7::from_diagonal(&information.into())
+}
+
+/// A start that claims to be exact is still only as good as this, metres.
+const SMALLEST_SIGMA_M: f64 = 1e-6;
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

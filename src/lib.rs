@@ -18,4 +18,4 @@ pub mod export;
 
 mod align;
 
-pub use align::{AlignOptions, Finalist, Progress, Scene, Up, align, search};
+pub use align::{AlignOptions, Progress, Up, align};

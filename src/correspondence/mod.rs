@@ -1,17 +1,22 @@
-//! Which patch may lie on which plane of the city: facets that can be seen, fields of facets, candidate pairs.
+//! Which patch may lie on which plane of the city, and which poses follow: fields of facets, candidate pairs, the search and its
+//! refinement.
 
+mod contenders;
 mod field;
 mod pairing;
 mod refine;
+mod scene;
 mod scoring;
 mod search;
 mod sight;
 mod slide;
 mod votes;
 
+pub use contenders::{Contender, Contest, contest, refiner};
 pub use field::{FacetField, FieldTriangle, Hit, Probe};
 pub use pairing::{Pair, Pairing, Sample};
-pub use refine::{ErrorModel, Refined, refine};
+pub use refine::{ErrorModel, ProbeOnPlane, Refined, Refiner};
+pub use scene::Scene;
 pub use scoring::{Mover, Scorer};
 pub use search::{PoseSearch, largest_shift};
 pub use sight::Sightlines;

@@ -35,6 +35,15 @@ pub struct Refined {
     pub equations: NormalEquations,
 }
 
+/// Refines poses of one scene.
+pub struct Refiner<'a> {
+    pub scorer: &'a Scorer<'a>,
+    pub planes: &'a CityPlanes,
+    pub errors: ErrorModel,
+    /// True where the scale is given and must not be moved.
+    pub scale_is_fixed: bool,
+}
+
 /// A point whose foot lies farther outside its facet than this share of the gate is not on it.
 const OUTSIDE_SHARE: f64 = 0.5;
 /// Directions held worse than this are not moved by least squares, metres.
@@ -44,93 +53,103 @@ const LOOSE_GATE_SIGMAS: f64 = 4.0;
 /// Probes per task.
 const CHUNK: usize = 512;
 
-/// Refines `pose` with the given gates (metres of the start), one step each, using the probes of `panel`.
-pub fn refine(
-    scorer: &Scorer,
-    planes: &CityPlanes,
-    panel: &[u32],
-    pose: &Similarity,
-    gates_m: &[f64],
-    errors: &ErrorModel,
-) -> Refined {
-    let mut refined =
-        Refined { city_from_level: *pose, chart: chart(scorer, pose), equations: NormalEquations::default() };
-    for &gate_m in gates_m {
-        let pose = refined.city_from_level;
-        refined.chart = chart(scorer, &pose);
-        refined.equations = equations(scorer, planes, panel, &pose, &refined.chart, gate_m, errors);
-        let step = refined.equations.step(HELD_M);
-        refined.city_from_level = refined.chart.moved(&pose, &step);
+/// A probe on a facet.
+#[derive(Clone, Copy, Debug)]
+pub struct ProbeOnPlane {
+    /// Index into the votes' probes.
+    pub probe: u32,
+    pub plane: PlaneId,
+    /// In the city.
+    pub place: Point3<f64>,
+    pub hit: Hit,
+    /// Tukey's weight of the residual.
+    pub weight: f64,
+}
+
+impl Refiner<'_> {
+    /// Refines `pose` with the given gates (metres of the start), one step each, using the probes of `panel`.
+    pub fn refine(&self, panel: &[u32], pose: &Similarity, gates_m: &[f64]) -> Refined {
+        let mut pose = *pose;
+        let mut refined =
+            Refined { city_from_level: pose, chart: self.chart(&pose), equations: NormalEquations::default() };
+        for &gate_m in gates_m {
+            let chart = self.chart(&pose);
+            let rows = self.probes_on_planes(panel, &pose, gate_m);
+            let equations = self.equations(&chart, &rows);
+            pose = chart.moved(&pose, &equations.step(HELD_M));
+            refined = Refined { city_from_level: pose, chart, equations };
+        }
+        refined
     }
-    refined
-}
 
-fn chart(scorer: &Scorer, pose: &Similarity) -> Chart {
-    Chart { center: pose.apply(&Point3::origin()), radius: (scorer.votes.radius_m * pose.scale).max(1e-9) }
-}
+    /// The same pose with its information, nothing moved.
+    pub fn assess(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Refined {
+        let chart = self.chart(pose);
+        let equations = self.equations(&chart, &self.probes_on_planes(panel, pose, gate_m));
+        Refined { city_from_level: *pose, chart, equations }
+    }
 
-/// A probe on a facet: its plane, the row, the residual, the robust weight.
-#[derive(Clone)]
-struct RowOnPlane {
-    plane: PlaneId,
-    place: Point3<f64>,
-    hit: Hit,
-    weight: f64,
-}
+    /// Which probe of `panel` lies on which plane within `gate_m` (metres of the start), sorted by plane.
+    pub fn probes_on_planes(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Vec<ProbeOnPlane> {
+        let chunk = |panel: &[u32]| self.chunk_on_planes(panel, pose, gate_m * pose.scale);
+        let mut rows = panel.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat();
+        rows.sort_by_key(|r| r.plane);
+        rows
+    }
 
-fn equations(
-    scorer: &Scorer,
-    planes: &CityPlanes,
-    panel: &[u32],
-    pose: &Similarity,
-    chart: &Chart,
-    gate_m: f64,
-    errors: &ErrorModel,
-) -> NormalEquations {
-    let mut rows: Vec<RowOnPlane> = panel
-        .par_chunks(CHUNK)
-        .map(|chunk| rows(scorer, planes, chunk, pose, gate_m, errors))
-        .collect::<Vec<_>>()
-        .concat();
-    rows.sort_by_key(|r| r.plane);
-    let mut sums = NormalEquations::default();
-    for of_plane in rows.chunk_by(|a, b| a.plane == b.plane) {
-        let mut plane_sums = NormalEquations::default();
+    fn chunk_on_planes(&self, panel: &[u32], pose: &Similarity, firm_gate_m: f64) -> Vec<ProbeOnPlane> {
+        let Scorer { votes, field, .. } = self.scorer;
+        let mover = Mover::new(pose);
+        let loose_gate_m = firm_gate_m.min(LOOSE_GATE_SIGMAS * self.errors.point_sigma_m);
+        let row = |&i: &u32| {
+            let probe = mover.probe(&votes.probes[i as usize]);
+            let gate_m = if (i as usize) < votes.firm { firm_gate_m } else { loose_gate_m };
+            let hit = field.nearest(&probe, gate_m)?;
+            let weight = tukey_weight(hit.across_m * hit.across_m, gate_m);
+            let plane = self.planes.of_facet(field.triangles[hit.triangle as usize].facet);
+            (hit.outside_m <= OUTSIDE_SHARE * gate_m && weight > 0.0).then_some(ProbeOnPlane {
+                probe: i,
+                plane,
+                place: probe.position,
+                hit,
+                weight,
+            })
+        };
+        panel.iter().filter_map(row).collect()
+    }
+
+    fn equations(&self, chart: &Chart, rows: &[ProbeOnPlane]) -> NormalEquations {
+        let mut sums = NormalEquations::default();
+        for of_plane in rows.chunk_by(|a, b| a.plane == b.plane) {
+            sums.merge(&self.equations_of_plane(chart, of_plane), 1.0);
+        }
+        sums
+    }
+
+    /// What the probes on one plane say, with the model's error common to all of them.
+    pub fn equations_of_plane(&self, chart: &Chart, rows: &[ProbeOnPlane]) -> NormalEquations {
+        let mut plane = NormalEquations::default();
         let mut count = 0.0;
-        for row in of_plane {
-            let triangle = &scorer.field.triangles[row.hit.triangle as usize];
-            plane_sums.add(&chart.row(&row.place, &triangle.normal), row.hit.across_m, row.weight);
+        for row in rows {
+            let normal = &self.scorer.field.triangles[row.hit.triangle as usize].normal;
+            let mut jacobian = chart.row(&row.place, normal);
+            if self.scale_is_fixed {
+                jacobian[6] = 0.0;
+            }
+            plane.add(&jacobian, row.hit.across_m, row.weight);
             count += row.weight;
         }
-        let variance = errors.point_sigma_m.powi(2) + count * errors.plane_sigma_m.powi(2);
-        sums.merge(&plane_sums, 1.0 / variance);
+        let variance = self.errors.point_sigma_m.powi(2) + count * self.errors.plane_sigma_m.powi(2);
+        let mut scaled = NormalEquations::default();
+        scaled.merge(&plane, 1.0 / variance);
+        scaled
     }
-    sums
+
+    fn chart(&self, pose: &Similarity) -> Chart {
+        let radius = (self.scorer.votes.radius_m * pose.scale).max(SMALLEST_RADIUS_M);
+        Chart { center: pose.apply(&Point3::origin()), radius }
+    }
 }
 
-fn rows(
-    scorer: &Scorer,
-    planes: &CityPlanes,
-    panel: &[u32],
-    pose: &Similarity,
-    gate_m: f64,
-    errors: &ErrorModel,
-) -> Vec<RowOnPlane> {
-    let mover = Mover::new(pose);
-    let gate_m = gate_m * pose.scale;
-    let loose_gate_m = gate_m.min(LOOSE_GATE_SIGMAS * errors.point_sigma_m);
-    let row = |&i: &u32| {
-        let probe = mover.probe(&scorer.votes.probes[i as usize]);
-        let gate_m = if (i as usize) < scorer.votes.firm { gate_m } else { loose_gate_m };
-        let hit = scorer.field.nearest(&probe, gate_m)?;
-        let weight = tukey_weight(hit.across_m * hit.across_m, gate_m);
-        let facet = scorer.field.triangles[hit.triangle as usize].facet;
-        (hit.outside_m <= OUTSIDE_SHARE * gate_m && weight > 0.0).then(|| RowOnPlane {
-            plane: planes.of_facet(facet),
-            place: probe.position,
-            hit,
-            weight,
-        })
-    };
-    panel.iter().filter_map(row).collect()
-}
+/// A cloud smaller than this has no turn or scale to speak of.
+const SMALLEST_RADIUS_M: f64 = 1e-3;

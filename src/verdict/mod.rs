@@ -1,6 +1,13 @@
 //! What was found, how sure it is, and on which evidence: the one struct that the report, the picture and the summary are
 //! views of. Verdicts read evidence; they never estimate.
 
+mod freedoms;
+mod judge;
+mod words;
+
+pub use freedoms::{Hold, freedoms};
+pub use judge::{Rival, Ruling, judge};
+
 use crate::geometry::{Point3, Similarity, Vector3};
 
 /// How sure the program is.

@@ -6,8 +6,9 @@ use super::facet::Shaper;
 use super::join::join_vertices;
 use super::origin::common_origin;
 use super::source::Source;
+use super::validate::validate;
 use super::warning::{CityDefect, Warnings};
-use super::{CityError, CityModel, CitySource, Facet, ObjectId};
+use super::{CityError, CityModel, CityRole, CitySource, Facet, ObjectId};
 use crate::geometry::Point3;
 
 /// Fixed, so that results do not depend on the number of threads; large enough to be worth a thread's while.
@@ -43,7 +44,9 @@ fn add_source(
         .collect();
     reserve(model, &chunks).ok_or_else(|| CityError::TooLarge { path: source.path.clone() })?;
     let (first_new, first_facet) = (model.vertices.len() as u32, model.facets.len() as u32);
+    let mut facet_faces = Vec::with_capacity(model.facets.capacity() - model.facets.len());
     for chunk in chunks {
+        facet_faces.extend_from_slice(&chunk.facet_faces);
         for (face, defect) in &chunk.defects {
             warnings.add(defect.clone(), 1, || source.place_of(*face as usize));
         }
@@ -56,6 +59,9 @@ fn add_source(
     let first_object = model.objects.len() as u32;
     model.objects.extend(source.objects.iter().cloned());
     let objects = first_object..model.objects.len() as u32;
+    let place_of = |facet: u32| source.place_of(facet_faces[(facet - facets.start) as usize] as usize);
+    let is_city = source.role == CityRole::City;
+    validate(model, objects.clone(), facets.clone(), is_city, warnings, place_of);
     let (path, role, precision_m) = (source.path.clone(), source.role, source.precision_m);
     model.sources.push(CitySource { path, role, facets, objects, precision_m });
     Ok(())
@@ -84,6 +90,8 @@ fn found(source: &Source) -> String {
 /// What became of a run of faces.
 struct Chunk {
     facets: Vec<Facet>,
+    /// The face that each facet was made of.
+    facet_faces: Vec<u32>,
     triangles: Vec<[u32; 3]>,
     new_vertices: Vec<Point3<f64>>,
     defects: Vec<(u32, CityDefect)>,
@@ -93,12 +101,14 @@ fn shape_chunk(source: &Source, chunk: usize, vertex_of: &[u32], model: &CityMod
     let first_object = model.objects.len() as u32;
     let faces = chunk * FACES_PER_CHUNK..source.face_count().min((chunk + 1) * FACES_PER_CHUNK);
     let mut shaper = Shaper::new(&model.vertices, source.precision_m, faces.len());
+    let mut facet_faces = Vec::with_capacity(faces.len());
     for face in faces {
         let object = ObjectId(first_object + source.face_objects[face]);
         shaper.shape(face as u32, object, ring_of(source.corners_of(face), vertex_of));
+        facet_faces.resize(shaper.facets.len(), face as u32);
     }
     let Shaper { facets, triangles, new_vertices, defects, .. } = shaper;
-    Chunk { facets, triangles, new_vertices, defects }
+    Chunk { facets, facet_faces, triangles, new_vertices, defects }
 }
 
 /// The face's vertices without immediate repetitions, also across the closing edge.

@@ -10,7 +10,9 @@ mod origin;
 mod read;
 mod recognise;
 mod source;
+mod subset;
 mod triangulate;
+mod validate;
 mod warning;
 
 use std::ops::Range;

@@ -44,13 +44,34 @@ pub enum CityDefect {
     SelfIntersecting,
     /// Polygons that cross themselves beyond repair; left out.
     Tangled,
+    /// Facets with the outline of an earlier one, the same way round.
+    Doubled,
+    /// Facets with the outline of an earlier one, the other way round: party walls, or walls without thickness.
+    DoubledReversed,
+    /// Objects with edges that two facets walk in the same direction, so that one of them has its outward side inside.
+    MixedOrientation { edges: u64 },
+    /// Objects with edges that only one facet has.
+    OpenShell { open_edges: u64, edges: u64 },
 }
 
 impl CityDefect {
     /// Takes in the figures of the same kind of defect elsewhere.
     fn merge(&mut self, other: &CityDefect) {
-        if let (CityDefect::NonPlanar { worst_m }, CityDefect::NonPlanar { worst_m: other_m }) = (self, other) {
-            *worst_m = worst_m.max(*other_m);
+        match (self, other) {
+            (CityDefect::NonPlanar { worst_m }, CityDefect::NonPlanar { worst_m: other_m }) => {
+                *worst_m = worst_m.max(*other_m);
+            }
+            (CityDefect::MixedOrientation { edges }, CityDefect::MixedOrientation { edges: others }) => {
+                *edges += others;
+            }
+            (
+                CityDefect::OpenShell { open_edges, edges },
+                CityDefect::OpenShell { open_edges: others_open, edges: others },
+            ) => {
+                *open_edges += others_open;
+                *edges += others;
+            }
+            _ => {}
         }
     }
 }
@@ -104,6 +125,14 @@ impl fmt::Display for CityWarning {
                 ("polygon crosses or overlaps itself", "polygons cross or overlap themselves")
             }
             CityDefect::Tangled => ("polygon is tangled", "polygons are tangled"),
+            CityDefect::Doubled => ("facet stands twice", "facets stand twice"),
+            CityDefect::DoubledReversed => {
+                ("facet stands back to back with its like", "facets stand back to back with their like")
+            }
+            CityDefect::MixedOrientation { .. } => {
+                ("object has facets whose sides disagree", "objects have facets whose sides disagree")
+            }
+            CityDefect::OpenShell { .. } => ("object is an open shell", "objects are open shells"),
         };
         write!(f, "{} {}", self.count, if self.count == 1 { one } else { many })?;
         match self.defect {
@@ -112,6 +141,12 @@ impl fmt::Display for CityWarning {
             CityDefect::DuplicateVertices => write!(f, ", joined")?,
             CityDefect::NonPlanar { worst_m } => write!(f, " (worst by {worst_m:.3} m), split into triangles")?,
             CityDefect::SelfIntersecting => write!(f, ", kept by the even-odd rule")?,
+            CityDefect::Doubled => write!(f, ", kept")?,
+            CityDefect::DoubledReversed => write!(f, " (party walls, or walls without thickness), kept")?,
+            CityDefect::MixedOrientation { edges } => write!(f, " (at {edges} edges), kept as they are")?,
+            CityDefect::OpenShell { open_edges, edges } => {
+                write!(f, " ({open_edges} of {edges} edges belong to one facet alone), kept")?;
+            }
         }
         write!(f, "; first: {}", self.example)
     }

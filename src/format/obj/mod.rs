@@ -8,6 +8,8 @@ mod guard;
 mod join;
 mod number;
 mod piece;
+#[cfg(test)]
+mod tests;
 mod write;
 
 use std::ops::Range;

@@ -1,0 +1,133 @@
+//! What is wrong with shells as a whole: sides that disagree, walls that stand twice, shells that are open.
+
+use rayon::prelude::*;
+
+use super::warning::{CityDefect, CityPlace, Warnings};
+use super::{CityModel, Facet};
+
+/// Objects looked at together by one thread.
+const OBJECTS_PER_CHUNK: usize = 64;
+
+/// An edge of one facet, from the lower vertex to the higher or back.
+type Edge = (u32, u32, bool, u32);
+
+/// What the edges of one object tell.
+#[derive(Clone, Copy, Default)]
+struct Shell {
+    edges: u64,
+    /// Edges of one facet only, and the first facet that has one.
+    open: u64,
+    first_open: u32,
+    /// Edges that two facets walk in the same direction, so that their outward sides disagree.
+    mixed: u64,
+    first_mixed: u32,
+}
+
+/// Judges the objects of one file. `objects` and `facets` are the file's own in the model; `place_of` says where a
+/// facet came from.
+pub(super) fn validate(
+    model: &CityModel,
+    objects: std::ops::Range<u32>,
+    facets: std::ops::Range<u32>,
+    is_closed_by_nature: bool,
+    warnings: &mut Warnings,
+    place_of: impl Fn(u32) -> CityPlace,
+) {
+    let by_object = facets_by_object(model, objects, facets.clone());
+    let judged = by_object.par_chunks(OBJECTS_PER_CHUNK);
+    let shells: Vec<Vec<Shell>> =
+        judged.map(|chunk| chunk.iter().map(|facets| judge(model, facets)).collect()).collect();
+    for shell in shells.iter().flatten() {
+        if shell.mixed > 0 {
+            let defect = CityDefect::MixedOrientation { edges: shell.mixed };
+            warnings.add(defect, 1, || place_of(shell.first_mixed));
+        }
+        if shell.open > 0 && is_closed_by_nature {
+            let defect = CityDefect::OpenShell { open_edges: shell.open, edges: shell.edges };
+            warnings.add(defect, 1, || place_of(shell.first_open));
+        }
+    }
+    for (facet, earlier_is_reversed) in doubled(model, facets) {
+        let defect = if earlier_is_reversed { CityDefect::DoubledReversed } else { CityDefect::Doubled };
+        warnings.add(defect, 1, || place_of(facet));
+    }
+}
+
+/// The facets of each object in order; objects without any are left out.
+fn facets_by_object(model: &CityModel, objects: std::ops::Range<u32>, facets: std::ops::Range<u32>) -> Vec<Vec<u32>> {
+    let mut by_object = vec![Vec::new(); objects.len()];
+    for facet in facets {
+        by_object[(model.facets[facet as usize].object.0 - objects.start) as usize].push(facet);
+    }
+    by_object.retain(|facets| !facets.is_empty());
+    by_object
+}
+
+fn judge(model: &CityModel, facets: &[u32]) -> Shell {
+    let mut edges: Vec<Edge> = Vec::with_capacity(4 * facets.len());
+    for &facet in facets {
+        edges.extend(edges_of(&model.facets[facet as usize]).map(|(low, high, rises)| (low, high, rises, facet)));
+    }
+    edges.par_sort_unstable();
+    let mut shell = Shell { first_open: u32::MAX, first_mixed: u32::MAX, ..Shell::default() };
+    for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        shell.edges += 1;
+        match edge {
+            [only] => {
+                shell.open += 1;
+                shell.first_open = shell.first_open.min(only.3);
+            }
+            // More than two facets at one edge are no shell, and tell nothing about sides.
+            [one, other] if one.2 == other.2 => {
+                shell.mixed += 1;
+                shell.first_mixed = shell.first_mixed.min(one.3).min(other.3);
+            }
+            _ => {}
+        }
+    }
+    shell
+}
+
+fn edges_of(facet: &Facet) -> impl Iterator<Item = (u32, u32, bool)> + '_ {
+    let next = facet.outline.iter().cycle().skip(1);
+    facet.outline.iter().zip(next).map(|(&from, &to)| (from.min(to), from.max(to), from < to))
+}
+
+/// Facets that have the outline of an earlier one of the whole model, and whether that runs the other way round.
+fn doubled(model: &CityModel, facets: std::ops::Range<u32>) -> Vec<(u32, bool)> {
+    let mut keys: Vec<([u32; 4], u32)> =
+        model.facets.par_iter().zip(0..facets.end).map(|(facet, at)| (key(facet), at)).collect();
+    keys.par_sort_unstable();
+    let mut doubled = Vec::new();
+    for alike in keys.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
+        for (at, &(_, facet)) in alike.iter().enumerate().skip(1) {
+            let (outline, is_reversed) = canonical(&model.facets[facet as usize]);
+            let same = alike[..at].iter().map(|&(_, earlier)| canonical(&model.facets[earlier as usize]));
+            let earlier = same.into_iter().find(|(earlier, _)| *earlier == outline);
+            doubled.extend(earlier.map(|(_, earlier_is_reversed)| (facet, earlier_is_reversed != is_reversed)));
+        }
+    }
+    doubled.retain(|(facet, _)| facets.contains(facet));
+    doubled.sort_unstable();
+    doubled
+}
+
+/// Equal for outlines of the same vertices in the same or the opposite order, and seldom for others.
+fn key(facet: &Facet) -> [u32; 4] {
+    let lowest = facet.outline.iter().copied().min().unwrap_or_default();
+    let highest = facet.outline.iter().copied().max().unwrap_or_default();
+    let sum = facet.outline.iter().fold(0_u32, |sum, &vertex| sum.wrapping_add(vertex));
+    [lowest, highest, sum, facet.outline.len() as u32]
+}
+
+/// The outline from its lowest vertex on, in the direction of the lower neighbour, and whether that is backwards.
+fn canonical(facet: &Facet) -> (Vec<u32>, bool) {
+    let outline = &facet.outline;
+    let start = (0..outline.len()).min_by_key(|&at| outline[at]).unwrap_or(0);
+    let mut turned: Vec<u32> = outline[start..].iter().chain(&outline[..start]).copied().collect();
+    let is_reversed = turned.len() > 2 && turned[1] > turned[turned.len() - 1];
+    if is_reversed {
+        turned[1..].reverse();
+    }
+    (turned, is_reversed)
+}

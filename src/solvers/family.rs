@@ -30,6 +30,30 @@ impl Sought {
     }
 }
 
+/// Points per plane of the rigid samples: the paper's Table 1, the minimal ones first.
+pub const RIGID: [&[usize]; 10] = [
+    &[3, 2, 1],
+    &[3, 1, 1, 1],
+    &[2, 2, 2],
+    &[2, 2, 1, 1],
+    &[2, 1, 1, 1, 1],
+    &[1, 1, 1, 1, 1, 1],
+    &[3, 3, 1],
+    &[3, 2, 2],
+    &[3, 3, 2],
+    &[3, 3, 3],
+];
+
+/// Points per plane of the minimal samples of a similarity.
+pub const SIMILARITY: [&[usize]; 6] =
+    [&[3, 2, 1, 1], &[3, 1, 1, 1, 1], &[2, 2, 2, 1], &[2, 2, 1, 1, 1], &[2, 1, 1, 1, 1, 1], &[1, 1, 1, 1, 1, 1, 1]];
+
+/// The same for a rigid pose with known vertical.
+pub const UPRIGHT_RIGID: [&[usize]; 2] = [&[2, 1, 1], &[1, 1, 1, 1]];
+
+/// The same for a similarity with known vertical.
+pub const UPRIGHT_SIMILARITY: [&[usize]; 2] = [&[2, 1, 1, 1], &[1, 1, 1, 1, 1]];
+
 /// All poses of a sample whose rows are grouped by plane: `points_per_plane` counts them, largest first, so that (3,2,1) is
 /// `&[3, 2, 1]` with six rows. Takes the fastest solver of the table in `solvers`. A sample that none serves (wrong
 /// number of rows, groups that do not add up) has no poses, like a degenerate one.

@@ -52,7 +52,7 @@ mod two_triples;
 mod upright;
 
 pub use degeneracy::{Degeneracy, NOT_ISOLATED, WEAK, condition_at};
-pub use family::{Sought, solve_minimal};
+pub use family::{RIGID, SIMILARITY, Sought, UPRIGHT_RIGID, UPRIGHT_SIMILARITY, solve_minimal};
 pub use general::{Solution, refine, solve};
 pub use poses::{MOST_POSES, Poses};
 pub use quadrics::{se3_6pt, sim3_7pt};

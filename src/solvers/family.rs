@@ -30,6 +30,30 @@ impl Sought {
     }
 }
 
+/// Points per plane of the rigid samples: the paper's Table 1, the minimal ones first.
+pub const RIGID: [&[usize]; 10] = [
+    &[3, 2, 1],
+    &[3, 1, 1, 1],
+    &[2, 2, 2],
+    &[2, 2, 1, 1],
+    &[2, 1, 1, 1, 1],
+    &[1, 1, 1, 1, 1, 1],
+    &[3, 3, 1],
+    &[3, 2, 2],
+    &[3, 3, 2],
+    &[3, 3, 3],
+];
+
+/// Points per plane of the minimal samples of a similarity.
+pub const SIMILARITY: [&[usize]; 6] =
+    [&[3, 2, 1, 1], &[3, 1, 1, 1, 1], &[2, 2, 2, 1], &[2, 2, 1, 1, 1], &[2, 1, 1, 1, 1, 1], &[1, 1, 1, 1, 1, 1, 1]];
+
+/// The same for a rigid pose with known vertical.
+pub const UPRIGHT_RIGID: [&[usize]; 2] = [&[2, 1, 1], &[1, 1, 1, 1]];
+
+/// The same for a similarity with known vertical.
+pub const UPRIGHT_SIMILARITY: [&[usize]; 2] = [&[2, 1, 1, 1], &[1, 1, 1, 1, 1]];
+
 /// All poses of a sample whose rows are grouped by plane: `points_per_plane` counts them, largest first, so that (3,2,1) is
 /// `&[3, 2, 1]` with six rows. Takes the fastest solver of the table in `solvers`. A sample that none serves (wrong
 /// number of rows, groups that do not add up) has no poses, like a degenerate one.
@@ -37,38 +61,41 @@ pub fn solve_minimal(sought: &Sought, points_per_plane: &[usize], rows: &[Row]) 
     if points_per_plane.iter().sum::<usize>() != rows.len() {
         return Poses::none();
     }
-    let solved = match sought {
+    match sought {
         Sought::Rigid => rigid(points_per_plane, rows),
         Sought::Similarity => similarity(points_per_plane, rows),
-        Sought::UprightRigid(up) => rows.try_into().ok().map(|rows| upright_se3_4pt(rows, up)),
-        Sought::UprightSimilarity(up) => rows.try_into().ok().map(|rows| upright_sim3_5pt(rows, up)),
-    };
-    solved.unwrap_or_else(Poses::none)
-}
-
-fn rigid(points_per_plane: &[usize], rows: &[Row]) -> Option<Poses> {
-    match points_per_plane {
-        [3, 3, 3] => return rows.try_into().ok().map(se3_333),
-        [3, 3, 2] => return rows.try_into().ok().map(se3_332),
-        [3, 3, 1] => return rows.try_into().ok().map(se3_331),
-        [3, 2, 2] => return rows.try_into().ok().map(se3_322),
-        _ => {}
+        Sought::UprightRigid(up) => with(rows, |rows| upright_se3_4pt(rows, up)),
+        Sought::UprightSimilarity(up) => with(rows, |rows| upright_sim3_5pt(rows, up)),
     }
-    let rows: &[Row; 6] = rows.try_into().ok()?;
-    Some(match points_per_plane {
-        [3, 2, 1] => se3_321(rows),
-        [3, 1, 1, 1] => se3_3111(rows),
-        [2, ..] => se3_pair_4pt(rows),
-        _ => se3_6pt(rows),
-    })
 }
 
-fn similarity(points_per_plane: &[usize], rows: &[Row]) -> Option<Poses> {
-    let rows: &[Row; 7] = rows.try_into().ok()?;
-    Some(match points_per_plane {
-        [3, 2, 1, 1] => sim3_3211(rows),
-        [3, 1, 1, 1, 1] => sim3_31111(rows),
-        [2, ..] => sim3_pair_5pt(rows),
-        _ => sim3_7pt(rows),
-    })
+/// Calls a solver of so many rows.
+#[inline]
+fn with<const M: usize>(rows: &[Row], solver: impl FnOnce(&[Row; M]) -> Poses) -> Poses {
+    match rows.try_into() {
+        Ok(rows) => solver(rows),
+        Err(_) => Poses::none(),
+    }
+}
+
+fn rigid(points_per_plane: &[usize], rows: &[Row]) -> Poses {
+    match points_per_plane {
+        [3, 2, 1] => with(rows, se3_321),
+        [3, 1, 1, 1] => with(rows, se3_3111),
+        [3, 3, 1] => with(rows, se3_331),
+        [3, 2, 2] => with(rows, se3_322),
+        [3, 3, 2] => with(rows, se3_332),
+        [3, 3, 3] => with(rows, se3_333),
+        [2, ..] => with(rows, se3_pair_4pt),
+        _ => with(rows, se3_6pt),
+    }
+}
+
+fn similarity(points_per_plane: &[usize], rows: &[Row]) -> Poses {
+    match points_per_plane {
+        [3, 2, 1, 1] => with(rows, sim3_3211),
+        [3, 1, 1, 1, 1] => with(rows, sim3_31111),
+        [2, ..] => with(rows, sim3_pair_5pt),
+        _ => with(rows, sim3_7pt),
+    }
 }

@@ -58,31 +58,45 @@ pub struct Solution {
 /// All poses that satisfy all rows. `normal` may have any length here; equal rows count once.
 pub fn solve(sought: &Sought, rows: &[Row]) -> Result<Vec<Solution>, Degeneracy> {
     let problem = Normalised::new(sought, rows)?;
+    let limit = if problem.rows.len() == sought.unknowns() { EXACT } else { CONSISTENT };
+    let mut fits: Vec<Fit> = candidates(&problem)?.iter().filter_map(|start| polish(&problem, start)).collect();
+    fits.retain(|fit| fit.scale > 0.0 && fit.residual <= limit * fit.scale.max(1.0));
+    // Of several approaches to one solution the best stays.
+    fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
     let mut isolated: Vec<Solution> = Vec::new();
     let mut singular = false;
-    for start in candidates(&problem)? {
-        let Some(fit) = polish(&problem, &start) else { continue };
-        let limit = if problem.rows.len() == sought.unknowns() { EXACT } else { CONSISTENT };
-        if !(fit.scale > 0.0 && fit.residual <= limit * fit.scale.max(1.0)) {
-            continue;
-        }
-        let condition = condition_of(&problem, &fit);
-        if condition < NOT_ISOLATED {
+    for fit in &fits {
+        let solution = Solution {
+            object_from_sensor: problem.pose(fit),
+            residual: fit.residual / fit.scale,
+            condition: condition_of(&problem, fit),
+        };
+        if solution.condition < NOT_ISOLATED {
             singular = true;
-        } else if !isolated.iter().any(|other| same(&problem.pose(&fit), &other.object_from_sensor)) {
-            let residual = fit.residual / fit.scale;
-            isolated.push(Solution { object_from_sensor: problem.pose(&fit), residual, condition });
+        } else if solution.is_finite() && !isolated.iter().any(|other| solution.same(other)) {
+            isolated.push(solution);
         }
     }
     if isolated.is_empty() && singular {
         return Err(Degeneracy::NotIsolated);
     }
-    isolated.retain(|s| s.object_from_sensor.translation.iter().all(|v| v.is_finite()));
     Ok(isolated)
 }
 
-fn same(a: &Similarity, b: &Similarity) -> bool {
-    (a.rotation.matrix() - b.rotation.matrix()).norm() < SAME && (a.scale / b.scale - 1.0).abs() < SAME
+impl Solution {
+    /// Whether two polished poses are one: residuals divided by the condition say how far polishing may have left each
+    /// from the solution.
+    fn same(&self, other: &Solution) -> bool {
+        let (a, b) = (&self.object_from_sensor, &other.object_from_sensor);
+        let doubt = (self.residual + other.residual) / self.condition.min(other.condition);
+        let same = SAME.max(10.0 * doubt);
+        (a.rotation.matrix() - b.rotation.matrix()).norm() < same && (a.scale / b.scale - 1.0).abs() < same
+    }
+
+    fn is_finite(&self) -> bool {
+        let pose = &self.object_from_sensor;
+        (pose.scale + pose.translation.sum() + pose.rotation.matrix().sum()).is_finite()
+    }
 }
 
 fn condition_of(problem: &Normalised, fit: &Fit) -> f64 {

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use super::report::ReportError;
+
 /// Why a result could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
@@ -11,6 +13,10 @@ pub enum ExportError {
     Unwritable { path: PathBuf, source: std::io::Error },
     #[error("cannot write {path}: expected {expected}, got {got}")]
     Unfit { path: PathBuf, expected: &'static str, got: String },
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error("cannot write {path} as JSON: {source}")]
+    Json { path: PathBuf, source: serde_json::Error },
 }
 
 /// Bytes gathered before each write to a file.

@@ -5,13 +5,15 @@
 //! viewers shade them flat then, which is what a polyhedral city wants.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 
 use gltf_json::mesh::Mode;
 use gltf_json::scene::UnitQuaternion;
 use gltf_json::{Index, Material, Mesh, Node};
 use serde_json::json;
 
+use super::file::{ExportError, write_file};
 use super::glb::{Geometry, Glb};
 use crate::city::{CityModel, Facet};
 use crate::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
@@ -53,17 +55,8 @@ pub struct Placed<'a> {
     pub city_from_sfm: Similarity,
 }
 
-/// Why a scene could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum SceneError {
-    #[error("cannot write the scene: {source}: {}", path.display())]
-    Io { path: PathBuf, source: std::io::Error },
-    #[error("cannot put the scene into JSON: {0}")]
-    Json(#[from] serde_json::Error),
-}
-
 /// Writes a scene as GLB.
-pub fn write_scene(path: &Path, scene: &Scene<'_>) -> Result<(), SceneError> {
+pub fn write_scene(path: &Path, scene: &Scene<'_>) -> Result<(), ExportError> {
     let mut glb = Glb::default();
     // The frame of all that follows: relative to the city's origin, z up.
     let placed = scene.placed.map(|p| Placed { city_from_sfm: p.city_from_sfm.relative_to(&scene.city.origin), ..p });
@@ -81,12 +74,11 @@ pub fn write_scene(path: &Path, scene: &Scene<'_>) -> Result<(), SceneError> {
         "frame": "x = city x, y = city z (up), z = -city y, metres, relative to origin (city frame: x, y, z)",
         "city_triangles": { "in_model": scene.city.triangles.len(), "written": written },
     });
-    let bytes = glb.into_bytes(root, &extras)?;
-    std::fs::write(path, bytes).map_err(|source| SceneError::Io { path: path.into(), source })
+    write_glb(path, glb, root, &extras)
 }
 
 /// Writes a city with a colour (sRGB) for every facet.
-pub fn write_colored_city(path: &Path, title: &str, city: &CityModel, colors: &[[u8; 3]]) -> Result<(), SceneError> {
+pub fn write_colored_city(path: &Path, title: &str, city: &CityModel, colors: &[[u8; 3]]) -> Result<(), ExportError> {
     let mut glb = Glb::default();
     let material = glb.material("planes", [1.0; 3], true);
     let mut children = Vec::new();
@@ -109,8 +101,12 @@ pub fn write_colored_city(path: &Path, title: &str, city: &CityModel, colors: &[
     }
     let children = (!children.is_empty()).then_some(children);
     let root = glb.node(title, Node { children, ..Default::default() });
-    let bytes = glb.into_bytes(root, &json!({ "origin": city.origin.as_slice() }))?;
-    std::fs::write(path, bytes).map_err(|source| SceneError::Io { path: path.into(), source })
+    write_glb(path, glb, root, &json!({ "origin": city.origin.as_slice() }))
+}
+
+fn write_glb(path: &Path, glb: Glb, root: Index<Node>, extras: &serde_json::Value) -> Result<(), ExportError> {
+    let bytes = glb.into_bytes(root, extras).map_err(|source| ExportError::Json { path: path.into(), source })?;
+    write_file(path, |out| out.write_all(&bytes))
 }
 
 /// A node with one child an object, so that a viewer tells which building one clicks on; and the number of triangles.
@@ -330,7 +326,7 @@ mod tests {
                 name: "a/b.jpg".into(),
                 cam_from_sfm_rotation: Rotation3::identity(),
                 cam_from_sfm_translation: Vector3::new(0.0, 0.0, 5.0),
-                ..Default::default()
+                observations: Vec::new(),
             }],
             points: vec![Point3::new(1.0, 2.0, 3.0), Point3::new(1e300, 0.0, 0.0)],
             ..Default::default()

@@ -3,12 +3,16 @@
 
 pub mod colmap;
 mod file;
+mod folder;
 mod glb;
 pub mod gltf;
 mod output;
+mod planes;
 pub mod ply;
 mod report;
 
 pub use file::ExportError;
+pub use folder::{Formats, write_alignment, write_placed};
 pub use output::{Discard, Output, OutputError, OutputKind};
+pub use planes::{Lie, planes_report, write_planes_glb};
 pub use report::{CityCounts, InputSummary, ReportError, SfmCounts, alignment_report};

@@ -1,26 +1,11 @@
-//! The program: parse, run, exit status.
+//! Parse, run, exit code.
 
-mod cli {
-    pub mod solve;
-}
-
-use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-#[derive(Parser)]
-#[command(version, about)]
-struct Arguments {
-    #[command(subcommand)]
-    command: Command,
-}
+use clap::Parser;
 
-#[derive(Subcommand)]
-enum Command {
-    /// Solve one point-to-plane problem; `-` is standard input
-    Solve { problem: String },
-}
+mod cli;
 
 fn main() -> ExitCode {
-    let Command::Solve { problem } = Arguments::parse().command;
-    ExitCode::from(cli::solve::run(&problem))
+    cli::run(cli::Args::parse())
 }

@@ -1,0 +1,89 @@
+//! `cityweld align`
+
+use anyhow::Result;
+use cityweld::city::{CityModel, read_city};
+use cityweld::export::{CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, write_alignment};
+use cityweld::imagery::{LiftedSuperpixels, SlicOptions, lift_superpixels};
+use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+use cityweld::verdict::Verdict;
+
+use super::args::AlignArgs;
+use super::plan::{AlignPlan, file_name};
+use super::{Outcome, Session, summary};
+
+pub fn run(args: &AlignArgs, session: &Session) -> Result<Outcome> {
+    let plan = AlignPlan::new(args, session.common.seed)?;
+    let output = Output::begin(&plan.output, OutputKind::Folder, session.common.force)?;
+    session.interrupt.guard(&output);
+    carry_out(&plan, output, session)
+}
+
+/// Aligns, writes into `output`, puts it in its place and tells.
+pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<Outcome> {
+    let voice = &session.voice;
+    let inputs = Inputs::read(plan, session)?;
+    let progress = |stage, done, all| voice.bar.show(stage, done, all);
+    let superpixels = inputs.superpixels.as_ref();
+    let mut alignment = cityweld::align(&inputs.city, &inputs.sfm, superpixels, &plan.options, &progress);
+    voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
+    alignment.warnings.splice(0..0, inputs.warnings(plan));
+
+    voice.bar.show("writing", 0, 0);
+    let summary = inputs.summary(plan);
+    let files = write_alignment(&output.path(), &alignment, &summary, &inputs.city, &inputs.sfm)?;
+    output.commit()?;
+    voice.detail(&format!("{} written", plan.output.display()));
+
+    voice.warnings(&alignment.warnings);
+    if session.common.json {
+        voice.result(&alignment_report(&alignment, &summary)?);
+    } else {
+        voice.result(&summary::of_alignment(&alignment, &plan.output, &files, voice.seconds()));
+    }
+    Ok(if alignment.verdict == Verdict::Aligned { Outcome::Good } else { Outcome::Doubtful })
+}
+
+struct Inputs {
+    city: CityModel,
+    sfm: Reconstruction,
+    superpixels: Option<LiftedSuperpixels>,
+}
+
+impl Inputs {
+    fn read(plan: &AlignPlan, session: &Session) -> Result<Inputs> {
+        let voice = &session.voice;
+        voice.bar.show("reading the city", 0, 0);
+        let city = read_city(&plan.city.city, &plan.city.terrain, &plan.city.options)?;
+        voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));
+        voice.bar.show("reading the reconstruction", 0, 0);
+        let sfm = read_reconstruction(&plan.sfm)?;
+        voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
+        let superpixels = match &plan.superpixels {
+            None => None,
+            Some(source) => {
+                let progress = |done, all| voice.bar.show("superpixels", done, all);
+                let lifted = lift_superpixels(&sfm, source, &SlicOptions::default(), &progress)?;
+                voice.detail(&format!("superpixels: {}", lifted.superpixels.len()));
+                Some(lifted)
+            }
+        };
+        Ok(Inputs { city, sfm, superpixels })
+    }
+
+    /// What was tolerated while reading, once each.
+    fn warnings(&self, plan: &AlignPlan) -> Vec<String> {
+        let mut warnings = plan.warnings.clone();
+        warnings.extend(self.city.warnings.iter().map(ToString::to_string));
+        warnings.extend(self.sfm.warnings.iter().map(ToString::to_string));
+        warnings.extend(self.superpixels.iter().flat_map(|lifted| &lifted.warnings).map(ToString::to_string));
+        warnings
+    }
+
+    fn summary(&self, plan: &AlignPlan) -> InputSummary {
+        let superpixels = self.superpixels.as_ref().map(|lifted| lifted.superpixels.len());
+        InputSummary {
+            city: CityCounts::of(&self.city, plan.city.names()),
+            sfm: SfmCounts::of(&self.sfm, file_name(&plan.sfm), superpixels),
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! What was typed.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+/// Sets structure-from-motion reconstructions into polyhedral city models.
+#[derive(Parser, Debug)]
+#[command(
+    name = "cityweld",
+    version,
+    propagate_version = true,
+    subcommand_required = true,
+    arg_required_else_help = true,
+    max_term_width = 110,
+    after_help = "Examples:\n  \
+        cityweld demo\n  \
+        cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
+        cityweld planes city.glb -o planes.glb\n\n\
+        Exit status: 0 aligned; 1 any other verdict; 2 bad input or use, nothing written; 130 interrupted, nothing left behind."
+)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    Align(AlignArgs),
+    Planes(PlanesArgs),
+    Export(ExportArgs),
+    Demo(DemoArgs),
+    Solve(SolveArgs),
+}
+
+/// What every command takes.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Common {
+    /// Seed of the random draws; same seed, same answer, whatever the number of threads
+    #[arg(long, global = true, value_name = "N", default_value_t = 0, help_heading = "Common options")]
+    pub seed: u64,
+    /// Threads to work with, at least 1 [default: all cores]
+    #[arg(long, global = true, value_name = "N", help_heading = "Common options")]
+    pub threads: Option<NonZeroUsize>,
+    /// No progress, no warnings on standard error; errors still come
+    #[arg(long, global = true, help_heading = "Common options", conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say on standard error what goes in and how long each step takes
+    #[arg(short, long, global = true, help_heading = "Common options")]
+    pub verbose: bool,
+    /// Replace OUT if it exists
+    #[arg(long, global = true, help_heading = "Common options")]
+    pub force: bool,
+    /// The summary on standard output as JSON
+    #[arg(long, global = true, help_heading = "Common options")]
+    pub json: bool,
+}
+
+/// Find where a reconstruction stands in a city, judge it, write it there
+///
+/// Writes a folder OUT with alignment.json (verdict, transform, sigmas), scene.glb (city, points and cameras for any
+/// viewer), sfm/ (the COLMAP model moved into the city frame) and points.ply. The city frame is right-handed, metres,
+/// z up.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  \
+    cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
+    cityweld align city.glb cloud.ply --terrain ground.obj --start start.json -o out\n\n\
+    A start file: {\"scale\": 12.5, \"rotation\": [[1,0,0],[0,1,0],[0,0,1]], \"translation\": [100, 200, 3],\n  \
+    \"position_sigma\": 10, \"height_sigma\": 3, \"rotation_sigma_deg\": 10, \"tilt_sigma_deg\": 2, \"scale_sigma\": 0.15}\n\
+    It says x_city = scale * rotation * x_sfm + translation (metres, rotation row by row), and how far that may be off, one\n\
+    sigma each: metres horizontally and along up, degrees of heading and of tilt, natural logarithm of the scale.")]
+pub struct AlignArgs {
+    /// City model: OBJ, glTF or GLB
+    pub city: PathBuf,
+    /// Reconstruction: a folder with a COLMAP model (binary or text), or a PLY cloud
+    pub sfm: PathBuf,
+    /// Folder to make; must not exist (see --force)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Coarse place of the reconstruction, JSON (see below)
+    #[arg(long, value_name = "FILE")]
+    pub start: Option<PathBuf>,
+    /// Search without a start around a place of the city frame: X,Y[,Z],RADIUS in metres
+    #[arg(long, value_name = "X,Y[,Z],RADIUS", allow_hyphen_values = true)]
+    pub near: Option<Near>,
+    /// Further meshes in the same frame as CITY, such as ground; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub terrain: Vec<PathBuf>,
+    /// Folder of label images (PNG, grey, 8 or 16 bit; 0 is no superpixel), named as the photographs
+    #[arg(long, value_name = "DIR")]
+    pub labels: Option<PathBuf>,
+    /// Folder of the photographs (JPEG or PNG), named as in the reconstruction
+    #[arg(long, value_name = "DIR")]
+    pub photos: Option<PathBuf>,
+    /// Fixed scale, metres per reconstruction unit [default: free]
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    pub scale: Option<Scale>,
+    /// Up in the reconstruction's frame: auto, none, or X,Y,Z of any length
+    #[arg(long, value_name = "UP", default_value = "auto", allow_hyphen_values = true)]
+    pub up: UpArg,
+    /// Axis that is up in OBJ files
+    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
+    pub city_up: CityUpArg,
+}
+
+/// Show what the program sees in a city model: counts, extent, planes, warnings
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  cityweld planes city.obj --terrain ground.obj -o planes.glb")]
+pub struct PlanesArgs {
+    /// City model: OBJ, glTF or GLB
+    pub city: PathBuf,
+    /// Further meshes in the same frame as CITY; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub terrain: Vec<PathBuf>,
+    /// File to write: .glb (coloured by plane) or .json
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Axis that is up in OBJ files
+    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
+    pub city_up: CityUpArg,
+}
+
+/// Write a given (or edited) alignment again, in the formats asked for
+#[derive(clap::Args, Clone, Debug)]
+#[command(
+    after_help = "Example:\n  cityweld export city.obj sfm/ --alignment out/alignment.json --format glb,ply -o again"
+)]
+pub struct ExportArgs {
+    /// City model: OBJ, glTF or GLB
+    pub city: PathBuf,
+    /// Reconstruction: a folder with a COLMAP model (binary or text), or a PLY cloud
+    pub sfm: PathBuf,
+    /// alignment.json whose transform (or else best_candidate) is used
+    #[arg(long, value_name = "FILE")]
+    pub alignment: PathBuf,
+    /// Folder to make; must not exist (see --force)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// glb: scene.glb; colmap: sfm/; ply: points.ply [default: all that the reconstruction allows]
+    #[arg(long, value_name = "FORMATS", value_enum, value_delimiter = ',')]
+    pub format: Vec<FormatArg>,
+    /// Further meshes in the same frame as CITY; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub terrain: Vec<PathBuf>,
+    /// Axis that is up in OBJ files
+    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
+    pub city_up: CityUpArg,
+}
+
+/// Align the sample that is inside the program: a city block of Rotterdam and a reconstruction of it
+#[derive(clap::Args, Clone, Debug)]
+pub struct DemoArgs {
+    /// Folder to make; must not exist (see --force)
+    #[arg(short, long, value_name = "OUT", default_value = "cityweld-demo")]
+    pub output: PathBuf,
+}
+
+/// Run the minimal solvers on one point-to-plane problem and print all poses as JSON
+#[derive(clap::Args, Clone, Debug)]
+pub struct SolveArgs {
+    /// The problem, JSON; `-` is standard input
+    #[arg(value_name = "PROBLEM.json")]
+    pub problem: String,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CityUpArg {
+    Z,
+    Y,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FormatArg {
+    Glb,
+    Colmap,
+    Ply,
+}
+
+/// `--up`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum UpArg {
+    Auto,
+    None,
+    Given([f64; 3]),
+}
+
+impl FromStr for UpArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<UpArg, String> {
+        match text {
+            "auto" => Ok(UpArg::Auto),
+            "none" => Ok(UpArg::None),
+            _ => match *numbers(text).ok_or("expected auto, none, or three numbers X,Y,Z")? {
+                [0.0, 0.0, 0.0] => Err("the zero vector points nowhere".into()),
+                [x, y, z] => Ok(UpArg::Given([x, y, z])),
+                _ => Err("expected auto, none, or three numbers X,Y,Z".into()),
+            },
+        }
+    }
+}
+
+/// `--near`, city frame, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near;
+
+impl FromStr for Near {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Near, String> {
+        match numbers(text).as_deref() {
+            Some([_, _, radius] | [_, _, _, radius]) if *radius > 0.0 => Ok(Near),
+            _ => Err("expected X,Y,RADIUS or X,Y,Z,RADIUS in metres, with a radius above 0".into()),
+        }
+    }
+}
+
+/// `--scale`, metres per reconstruction unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale(pub f64);
+
+impl FromStr for Scale {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Scale, String> {
+        match numbers(text).as_deref() {
+            Some([scale]) if *scale > 0.0 => Ok(Scale(*scale)),
+            _ => Err("expected a finite number above 0: metres per reconstruction unit".into()),
+        }
+    }
+}
+
+/// Finite numbers between commas.
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    let parsed = text.split(',').map(|part| part.trim().parse::<f64>().ok().filter(|v| v.is_finite()));
+    parsed.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn up_is_a_word_or_a_direction() {
+        assert_eq!("auto".parse(), Ok(UpArg::Auto));
+        assert_eq!("0,-1,0".parse(), Ok(UpArg::Given([0.0, -1.0, 0.0])));
+        for wrong in ["", "up", "1,2", "0,0,0", "NaN,0,1", "1,2,3,4", "inf,0,0"] {
+            assert!(wrong.parse::<UpArg>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn scale_and_radius_are_positive_and_finite() {
+        assert_eq!("2.5".parse(), Ok(Scale(2.5)));
+        for wrong in ["0", "-1", "NaN", "inf", "1,2", "x"] {
+            assert!(wrong.parse::<Scale>().is_err(), "{wrong}");
+        }
+        assert!("-10,20,50".parse::<Near>().is_ok() && "1,2,3,4".parse::<Near>().is_ok());
+        for wrong in ["1,2", "1,2,0", "1,2,3,-4", "a,b,c"] {
+            assert!(wrong.parse::<Near>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! `cityweld demo`: the sample that is inside the program, unpacked beside its own result.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use cityweld::export::{Output, OutputKind};
+
+use super::align::carry_out;
+use super::args::{AlignArgs, CityUpArg, DemoArgs, UpArg};
+use super::plan::{AlignPlan, keeps_inputs};
+use super::{Outcome, Session};
+
+/// Where the sample lies in the output: whoever wants to go on finds the form of every input there.
+const SAMPLE_FOLDER: &str = "sample";
+
+/// A file of the sample: its path in the folder, and its content.
+type SampleFile = (&'static str, &'static [u8]);
+
+macro_rules! sample {
+    ($($path:literal),* $(,)?) => {
+        &[$(($path, include_bytes!(concat!("../../assets/sample/", $path)))),*]
+    };
+}
+
+/// A part of Delfshaven in Rotterdam, its reconstruction from 24 photographs, their superpixels, and a coarse start.
+const SAMPLE: &[SampleFile] = sample![
+    "LICENSE.txt",
+    "city.obj",
+    "start.json",
+    "sfm/cameras.txt",
+    "sfm/frames.txt",
+    "sfm/images.txt",
+    "sfm/points3D.txt",
+    "sfm/rigs.txt",
+    "labels/p001.png",
+    "labels/p002.png",
+    "labels/p003.png",
+    "labels/p004.png",
+    "labels/p005.png",
+    "labels/p006.png",
+    "labels/p007.png",
+    "labels/p008.png",
+    "labels/p009.png",
+    "labels/p010.png",
+    "labels/p011.png",
+    "labels/p012.png",
+    "labels/p013.png",
+    "labels/p014.png",
+    "labels/p015.png",
+    "labels/p016.png",
+    "labels/p017.png",
+    "labels/p018.png",
+    "labels/p019.png",
+    "labels/p020.png",
+    "labels/p021.png",
+    "labels/p022.png",
+    "labels/p023.png",
+    "labels/p024.png",
+    "photos/p001.jpg",
+    "photos/p007.jpg",
+    "photos/p013.jpg",
+    "photos/p019.jpg",
+];
+
+pub fn run(args: &DemoArgs, session: &Session) -> Result<Outcome> {
+    keeps_inputs(&args.output, &[])?;
+    let output = Output::begin(&args.output, OutputKind::Folder, session.common.force)?;
+    session.interrupt.guard(&output);
+    let sample = output.path().join(SAMPLE_FOLDER);
+    unpack(&sample)?;
+    let plan = AlignPlan { output: args.output.clone(), ..AlignPlan::new(&align_args(&sample), session.common.seed)? };
+    let outcome = carry_out(&plan, output, session)?;
+    if !session.common.json {
+        session.voice.result(&what_next(&args.output));
+    }
+    Ok(outcome)
+}
+
+fn unpack(folder: &Path) -> Result<()> {
+    for (path, content) in SAMPLE {
+        let path = folder.join(path);
+        let written =
+            path.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::write(&path, content));
+        written.with_context(|| format!("cannot unpack the sample: {}", path.display()))?;
+    }
+    Ok(())
+}
+
+fn align_args(sample: &Path) -> AlignArgs {
+    AlignArgs {
+        city: sample.join("city.obj"),
+        sfm: sample.join("sfm"),
+        // Within the sample, so that it never is a place that exists: the true one is set aside already.
+        output: sample.join("out"),
+        start: Some(sample.join("start.json")),
+        near: None,
+        terrain: Vec::new(),
+        labels: Some(sample.join("labels")),
+        photos: None,
+        scale: None,
+        up: UpArg::Auto,
+        city_up: CityUpArg::Z,
+    }
+}
+
+fn what_next(output: &Path) -> String {
+    let (out, sample) = (output.display(), output.join(SAMPLE_FOLDER));
+    let sample = sample.display();
+    format!(
+        "\nOpen {out}/scene.glb in any glTF viewer: the city in grey, the points in their colours, the cameras in red.\n\
+         The same by hand:\n  \
+         cityweld align {sample}/city.obj {sample}/sfm --labels {sample}/labels --start {sample}/start.json -o again\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn the_program_holds_every_file_of_the_sample() {
+        fn files(folder: &Path, found: &mut BTreeSet<String>, root: &Path) {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    files(&path, found, root);
+                } else {
+                    found.insert(path.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/"));
+                }
+            }
+        }
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+        let mut found = BTreeSet::new();
+        files(&root, &mut found, &root);
+        assert_eq!(found, SAMPLE.iter().map(|(path, _)| (*path).to_owned()).collect());
+    }
+}

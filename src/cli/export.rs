@@ -1,0 +1,62 @@
+//! `cityweld export`
+
+use anyhow::{Result, ensure};
+use cityweld::city::read_city;
+use cityweld::export::{Formats, Output, OutputKind, write_placed};
+use cityweld::format::{StoredAlignment, read_alignment};
+use cityweld::reconstruction::read_reconstruction;
+
+use super::args::{ExportArgs, FormatArg};
+use super::plan::{CityFiles, existing_sfm, keeps_inputs};
+use super::{Outcome, Session, summary};
+
+pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
+    let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
+    existing_sfm(&args.sfm, &args.city)?;
+    let mut inputs = vec![&args.city, &args.sfm, &args.alignment];
+    inputs.extend(&args.terrain);
+    keeps_inputs(&args.output, &inputs)?;
+    let stored = read_alignment(&args.alignment)?;
+    let output = Output::begin(&args.output, OutputKind::Folder, session.common.force)?;
+    session.interrupt.guard(&output);
+    let voice = &session.voice;
+
+    voice.bar.show("reading the city", 0, 0);
+    let city = read_city(&files.city, &files.terrain, &files.options)?;
+    voice.bar.show("reading the reconstruction", 0, 0);
+    let sfm = read_reconstruction(&args.sfm)?;
+    ensure!(
+        !sfm.images.is_empty() || !args.format.contains(&FormatArg::Colmap),
+        "the reconstruction is a cloud without images, which COLMAP's formats cannot hold; leave colmap out of --format: {}",
+        args.sfm.display()
+    );
+    voice.bar.show("writing", 0, 0);
+    let written =
+        write_placed(&output.path(), &title(&stored), &city, &sfm, &stored.city_from_sfm, formats(&args.format))?;
+    output.commit()?;
+
+    let warnings = city.warnings.iter().map(ToString::to_string).chain(sfm.warnings.iter().map(ToString::to_string));
+    voice.warnings(&warnings.collect::<Vec<_>>());
+    if session.common.json {
+        let answer = serde_json::json!({ "output": args.output.to_string_lossy(), "files": written });
+        voice.result(&format!("{answer:#}\n"));
+    } else {
+        voice.result(&summary::of_export(&title(&stored), &args.output, &written, voice.seconds()));
+    }
+    Ok(Outcome::Good)
+}
+
+/// All formats where none is named.
+fn formats(named: &[FormatArg]) -> Formats {
+    let wanted = |format| named.is_empty() || named.contains(&format);
+    Formats { glb: wanted(FormatArg::Glb), colmap: wanted(FormatArg::Colmap), ply: wanted(FormatArg::Ply) }
+}
+
+/// Only a transform was stood behind; who edits a file by hand may leave the verdict out.
+fn title(stored: &StoredAlignment) -> String {
+    match (stored.is_transform, stored.verdict.as_str()) {
+        (true, "" | "aligned") => "aligned".into(),
+        (true, verdict) => format!("given transform (the verdict beside it: {verdict})"),
+        (false, verdict) => format!("best candidate, NOT aligned ({verdict})"),
+    }
+}

@@ -1,0 +1,84 @@
+//! What was typed, turned into what is meant, done by one call of the library and told to a person or a script.
+
+mod align;
+mod args;
+mod demo;
+mod export;
+mod interrupt;
+mod plan;
+mod planes;
+mod print;
+mod progress;
+mod solve;
+mod summary;
+
+use std::process::ExitCode;
+
+use anyhow::Context;
+
+pub use args::Args;
+use args::Command;
+use interrupt::Interrupt;
+use print::Voice;
+
+/// Bad input or use; nothing was written.
+const EXIT_BAD_INPUT: u8 = 2;
+
+/// How a command ended that was carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    /// Done, and the answer is one to rely on.
+    Good,
+    /// Done, with any other verdict.
+    Doubtful,
+    /// Bad input, told already.
+    Refused,
+}
+
+/// What every command is given besides its own options.
+struct Session {
+    common: args::Common,
+    voice: Voice,
+    interrupt: Interrupt,
+}
+
+/// Carries out a command line.
+pub fn run(args: Args) -> ExitCode {
+    let interrupt = Interrupt::listen();
+    let session = Session { voice: Voice::new(&args.common), interrupt: interrupt.clone(), common: args.common };
+    let outcome = in_pool(&session, || dispatch(&args.command, &session));
+    interrupt.give_way();
+    match outcome {
+        Ok(Outcome::Good) => ExitCode::SUCCESS,
+        Ok(Outcome::Doubtful) => ExitCode::from(1),
+        Ok(Outcome::Refused) => ExitCode::from(EXIT_BAD_INPUT),
+        Err(error) => {
+            session.voice.error(&error);
+            ExitCode::from(EXIT_BAD_INPUT)
+        }
+    }
+}
+
+fn dispatch(command: &Command, session: &Session) -> anyhow::Result<Outcome> {
+    match command {
+        Command::Align(args) => align::run(args, session),
+        Command::Planes(args) => planes::run(args, session),
+        Command::Solve(args) => Ok(match solve::run(&args.problem) {
+            0 => Outcome::Good,
+            1 => Outcome::Doubtful,
+            _ => Outcome::Refused,
+        }),
+        Command::Demo(args) => demo::run(args, session),
+        Command::Export(args) => export::run(args, session),
+    }
+}
+
+/// Runs `work` in a pool of its own, so that `--threads` holds for all of it.
+fn in_pool<T: Send>(session: &Session, work: impl FnOnce() -> anyhow::Result<T> + Send) -> anyhow::Result<T> {
+    let threads = session.common.threads.map_or(0, std::num::NonZeroUsize::get);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .with_context(|| format!("cannot start {threads} threads; give fewer with --threads"))?;
+    pool.install(work)
+}

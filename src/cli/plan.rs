@@ -1,0 +1,151 @@
+//! What is meant: paths that exist, options that go together. Traps are found here, before any long work.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use cityweld::city::{CityOptions, CityUp};
+use cityweld::format::read_start;
+use cityweld::geometry::Vector3;
+use cityweld::imagery::SuperpixelSource;
+use cityweld::{AlignOptions, Up};
+
+use super::args::{AlignArgs, CityUpArg, UpArg};
+
+/// An alignment ready to be carried out.
+pub struct AlignPlan {
+    pub city: CityFiles,
+    pub sfm: PathBuf,
+    pub superpixels: Option<SuperpixelSource>,
+    pub options: AlignOptions,
+    pub output: PathBuf,
+    pub warnings: Vec<String>,
+}
+
+/// The files of a city model.
+pub struct CityFiles {
+    pub city: PathBuf,
+    pub terrain: Vec<PathBuf>,
+    pub options: CityOptions,
+}
+
+impl AlignPlan {
+    pub fn new(args: &AlignArgs, seed: u64) -> Result<AlignPlan> {
+        let city = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
+        existing_sfm(&args.sfm, &args.city)?;
+        let mut warnings = Vec::new();
+        let superpixels = superpixel_source(args, &mut warnings)?;
+        let mut inputs = vec![&args.city, &args.sfm];
+        inputs.extend(args.terrain.iter().chain(&args.start).chain(&args.labels).chain(&args.photos));
+        keeps_inputs(&args.output, &inputs)?;
+        Ok(AlignPlan {
+            options: align_options(args, seed)?,
+            city,
+            sfm: args.sfm.clone(),
+            superpixels,
+            output: args.output.clone(),
+            warnings,
+        })
+    }
+}
+
+impl CityFiles {
+    pub fn new(city: &Path, terrain: &[PathBuf], up: CityUpArg) -> Result<CityFiles> {
+        existing_file(city, "the city")?;
+        for path in terrain {
+            existing_file(path, "the terrain")?;
+            ensure!(!same(path, city), "the city is given again as terrain, leave one out: {}", path.display());
+        }
+        let up = match up {
+            CityUpArg::Z => CityUp::Z,
+            CityUpArg::Y => CityUp::Y,
+        };
+        Ok(CityFiles { city: city.into(), terrain: terrain.to_vec(), options: CityOptions { up } })
+    }
+
+    /// City and terrain, by their names alone.
+    pub fn names(&self) -> Vec<String> {
+        std::iter::once(&self.city).chain(&self.terrain).map(|path| file_name(path)).collect()
+    }
+}
+
+/// Last component of a path, as a report names a file.
+pub fn file_name(path: &Path) -> String {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    // "." and ".." have no name of their own.
+    name.or_else(|| Some(path.canonicalize().ok()?.file_name()?.to_string_lossy().into_owned())).unwrap_or_default()
+}
+
+pub fn existing_sfm(sfm: &Path, city: &Path) -> Result<()> {
+    let place = sfm.display();
+    std::fs::metadata(sfm)
+        .with_context(|| format!("cannot read the reconstruction, expected a COLMAP folder or a PLY file: {place}"))?;
+    ensure!(!same(sfm, city), "city and reconstruction are the same file: {place}");
+    Ok(())
+}
+
+/// Refuses an output that is one of the inputs or holds one: replacing it would delete what was read.
+pub fn keeps_inputs(output: &Path, inputs: &[&PathBuf]) -> Result<()> {
+    let Ok(real_output) = output.canonicalize() else { return Ok(()) };
+    for input in inputs {
+        let inside = input.canonicalize().is_ok_and(|real_input| real_input.starts_with(&real_output));
+        ensure!(
+            !inside,
+            "the output would replace an input ({}); name another place with -o: {}",
+            input.display(),
+            output.display()
+        );
+    }
+    let here = std::env::current_dir().and_then(|here| here.canonicalize());
+    ensure!(
+        !here.is_ok_and(|here| here.starts_with(&real_output)),
+        "the output would replace the folder that you are in; name another place with -o: {}",
+        output.display()
+    );
+    Ok(())
+}
+
+fn align_options(args: &AlignArgs, seed: u64) -> Result<AlignOptions> {
+    let Some(start) = &args.start else {
+        bail!(
+            "{} searching without a start is not built yet; say with --start FILE where the reconstruction is, \
+             roughly (`cityweld align --help` shows the file; rotation_sigma_deg 180 leaves the heading open)",
+            if args.near.is_some() { "--near alone is not enough:" } else { "no --start is given:" }
+        );
+    };
+    let start = read_start(start)?;
+    let up = match args.up {
+        UpArg::Auto => Up::Auto,
+        UpArg::None => Up::None,
+        UpArg::Given(up) => Up::Given(Vector3::from(up)),
+    };
+    Ok(AlignOptions { start, fixed_scale: args.scale.map(|scale| scale.0), up, seed })
+}
+
+fn superpixel_source(args: &AlignArgs, warnings: &mut Vec<String>) -> Result<Option<SuperpixelSource>> {
+    for (folder, option) in [(&args.labels, "--labels"), (&args.photos, "--photos")] {
+        let Some(folder) = folder else { continue };
+        let place = folder.display();
+        let mut entries = std::fs::read_dir(folder)
+            .with_context(|| format!("cannot read the folder of {option}, expected a folder of images: {place}"))?;
+        ensure!(
+            entries.next().is_some(),
+            "the folder of {option} is empty; give one with images, or leave it out: {place}"
+        );
+    }
+    if args.labels.is_some() && args.photos.is_some() {
+        warnings.push("--photos is not used: --labels says already what belongs together".into());
+    }
+    let labels = args.labels.clone().map(SuperpixelSource::Labels);
+    Ok(labels.or_else(|| args.photos.clone().map(SuperpixelSource::Photos)))
+}
+
+fn existing_file(path: &Path, what: &str) -> Result<()> {
+    let place = path.display();
+    let found = std::fs::metadata(path).with_context(|| format!("cannot read {what}: {place}"))?;
+    ensure!(!found.is_dir(), "{what} is a folder, expected an OBJ, glTF or GLB file: {place}");
+    Ok(())
+}
+
+fn same(a: &Path, b: &Path) -> bool {
+    a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}

@@ -1,0 +1,63 @@
+//! `cityweld planes`
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use cityweld::city::read_city;
+use cityweld::export::{Output, OutputKind, planes_report, write_planes_glb};
+use cityweld::planes::city_planes;
+
+use super::args::PlanesArgs;
+use super::plan::{CityFiles, keeps_inputs};
+use super::{Outcome, Session, summary};
+
+/// What `-o` asks for, by the ending of its name.
+enum Form {
+    Glb,
+    Json,
+}
+
+pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
+    let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
+    let output = args.output.as_deref().map(|path| begin(path, args, session)).transpose()?;
+    let voice = &session.voice;
+
+    voice.bar.show("reading the city", 0, 0);
+    let city = read_city(&files.city, &files.terrain, &files.options)?;
+    voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));
+    voice.bar.show("planes", 0, 0);
+    let planes = city_planes(&city);
+    voice.detail(&format!("planes: {}", planes.planes.len()));
+
+    let names = files.names();
+    if let Some((output, form)) = output {
+        match form {
+            Form::Glb => write_planes_glb(&output.path(), &city, &planes)?,
+            Form::Json => std::fs::write(output.path(), planes_report(&city, &planes, &names)?)
+                .with_context(|| format!("cannot write the planes: {}", output.path().display()))?,
+        }
+        output.commit()?;
+    }
+    let warnings: Vec<String> = city.warnings.iter().map(ToString::to_string).collect();
+    voice.warnings(&warnings);
+    if session.common.json {
+        voice.result(&planes_report(&city, &planes, &names)?);
+    } else {
+        voice.result(&summary::of_city(&city, &planes, &names, args.output.as_deref(), voice.seconds()));
+    }
+    Ok(Outcome::Good)
+}
+
+fn begin(path: &Path, args: &PlanesArgs, session: &Session) -> Result<(Output, Form)> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let form = match ending.as_deref() {
+        Some("glb") => Form::Glb,
+        Some("json") => Form::Json,
+        _ => bail!("the output's name ends in neither .glb nor .json, so its form is unknown: {}", path.display()),
+    };
+    let inputs: Vec<_> = std::iter::once(&args.city).chain(&args.terrain).collect();
+    keeps_inputs(path, &inputs)?;
+    let output = Output::begin(path, OutputKind::File, session.common.force)?;
+    session.interrupt.guard(&output);
+    Ok((output, form))
+}

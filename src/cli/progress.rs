@@ -1,0 +1,55 @@
+//! Progress of long stages, on a terminal only.
+
+use std::io::IsTerminal;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// One line that is drawn anew for every stage and gone at the end.
+pub struct Bar {
+    bar: ProgressBar,
+    stage: Mutex<&'static str>,
+}
+
+impl Bar {
+    /// A bar that stays silent where standard error is no terminal, or on wish.
+    pub fn new(quiet: bool) -> Bar {
+        let shown = !quiet && std::io::stderr().is_terminal();
+        let bar = if shown { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
+        if shown {
+            bar.enable_steady_tick(Duration::from_millis(100));
+        }
+        Bar { bar, stage: Mutex::new("") }
+    }
+
+    /// Stage `name` has done `done` of `all`; zero of `all` where that is not known.
+    pub fn show(&self, name: &'static str, done: usize, all: usize) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        let mut stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        if *stage != name {
+            *stage = name;
+            self.bar.reset();
+            self.bar.set_style(if all > 0 { measured() } else { unmeasured() });
+            self.bar.set_message(name);
+        }
+        self.bar.set_length(all as u64);
+        self.bar.set_position(done as u64);
+    }
+
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn measured() -> ProgressStyle {
+    let template = "{spinner} {msg:24} [{bar:30}] {pos}/{len} {eta_precise} left";
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ")
+}
+
+fn unmeasured() -> ProgressStyle {
+    ProgressStyle::with_template("{spinner} {msg:24} {elapsed_precise}")
+        .unwrap_or_else(|_| ProgressStyle::default_spinner())
+}

@@ -34,16 +34,17 @@ pub enum Command {
     Planes(PlanesArgs),
     Export(ExportArgs),
     Demo(DemoArgs),
+    Solve(SolveArgs),
 }
 
 /// What every command takes.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Common {
     /// Seed of the random draws; same seed, same answer, whatever the number of threads
-    #[arg(long, global = true, value_name = "N", default_value_t = 0, help_heading = "Common options")]
+    #[arg(long, global = true, value_name = "N", default_value_t = 0, allow_hyphen_values = true, help_heading = "Common options")]
     pub seed: u64,
     /// Threads to work with, at least 1 [default: all cores]
-    #[arg(long, global = true, value_name = "N", help_heading = "Common options")]
+    #[arg(long, global = true, value_name = "N", allow_hyphen_values = true, help_heading = "Common options")]
     pub threads: Option<NonZeroUsize>,
     /// No progress, no warnings on standard error; errors still come
     #[arg(long, global = true, help_heading = "Common options", conflicts_with = "verbose")]
@@ -156,6 +157,14 @@ pub struct DemoArgs {
     /// Folder to make; must not exist (see --force)
     #[arg(short, long, value_name = "OUT", default_value = "cityweld-demo")]
     pub output: PathBuf,
+}
+
+/// Run the minimal solvers on one point-to-plane problem and print all poses as JSON
+#[derive(clap::Args, Clone, Debug)]
+pub struct SolveArgs {
+    /// The problem, JSON; `-` is standard input
+    #[arg(value_name = "PROBLEM.json")]
+    pub problem: String,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,6 +9,7 @@ mod plan;
 mod planes;
 mod print;
 mod progress;
+mod solve;
 mod summary;
 
 use std::process::ExitCode;
@@ -30,6 +31,8 @@ enum Outcome {
     Good,
     /// Done, with any other verdict.
     Doubtful,
+    /// Bad input, told already.
+    Refused,
 }
 
 /// What every command is given besides its own options.
@@ -48,6 +51,7 @@ pub fn run(args: Args) -> ExitCode {
     match outcome {
         Ok(Outcome::Good) => ExitCode::SUCCESS,
         Ok(Outcome::Doubtful) => ExitCode::from(1),
+        Ok(Outcome::Refused) => ExitCode::from(EXIT_BAD_INPUT),
         Err(error) => {
             session.voice.error(&error);
             ExitCode::from(EXIT_BAD_INPUT)
@@ -59,6 +63,11 @@ fn dispatch(command: &Command, session: &Session) -> anyhow::Result<Outcome> {
     match command {
         Command::Align(args) => align::run(args, session),
         Command::Planes(args) => planes::run(args, session),
+        Command::Solve(args) => Ok(match solve::run(&args.problem) {
+            0 => Outcome::Good,
+            1 => Outcome::Doubtful,
+            _ => Outcome::Refused,
+        }),
         Command::Demo(args) => demo::run(args, session),
         Command::Export(args) => export::run(args, session),
     }

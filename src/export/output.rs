@@ -119,6 +119,13 @@ impl Output {
     }
 }
 
+impl Drop for Output {
+    fn drop(&mut self) {
+        // Without effect once committed. Whoever else knows of the folder does not keep it alive.
+        self.discard().discard();
+    }
+}
+
 impl Discard {
     pub fn discard(&self) {
         let Some(folder) = self.0.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
@@ -183,7 +190,11 @@ mod tests {
     #[test]
     fn leaves_nothing_behind_when_dropped_or_discarded() {
         let room = tempfile::tempdir().unwrap();
-        drop(Output::begin(&room.path().join("out"), OutputKind::Folder, false).unwrap());
+        let output = Output::begin(&room.path().join("out"), OutputKind::Folder, false).unwrap();
+        let known_elsewhere = output.discard();
+        drop(output);
+        assert!(names(room.path()).is_empty());
+        known_elsewhere.discard();
         let output = Output::begin(&room.path().join("out"), OutputKind::File, false).unwrap();
         std::fs::write(output.path(), "1").unwrap();
         output.discard().discard();

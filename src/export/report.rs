@@ -229,7 +229,7 @@ mod tests {
         let best = Similarity {
             scale: 0.1 + 0.2,
             rotation: Rotation3::from_euler_angles(0.3, -0.4, 1.9),
-            translation: Vector3::new(90851.453_312_345_67, 435_670.470_5, 1.0 / 3.0),
+            translation: Vector3::new(90_851.453_312_345_67, 435_670.470_5, 1.0 / 3.0),
         };
         Alignment {
             verdict,
@@ -322,8 +322,7 @@ mod tests {
         };
         if let Some(choices) = schema["anyOf"].as_array() {
             // Either null or the object.
-            let index = usize::from(!value.is_null());
-            let choice = choices.iter().filter(|c| (c["type"] == json!("null")) == (index == 0)).next().unwrap();
+            let choice = choices.iter().find(|c| (c["type"] == json!("null")) == value.is_null()).unwrap();
             return compare(value, choice, root, place);
         }
         match value {

@@ -1,0 +1,101 @@
+//! Every GLB that the program writes, put before the Khronos validator.
+//!
+//! Needs node and the npm package `gltf-validator`: installed where node finds it, or in the folder that the environment
+//! variable CITYWELD_NODE_MODULES names. Skipped where either is missing and the variable is not set.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use cityweld::city::{CityModel, CityOptions, read_city};
+use cityweld::export::gltf::{Placed, Scene, write_scene};
+use cityweld::export::write_planes_glb;
+use cityweld::format::read_start;
+use cityweld::planes::city_planes;
+use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+
+const SCRIPT: &str = "
+const validator = require('gltf-validator');
+const bytes = new Uint8Array(require('fs').readFileSync(process.argv[1]));
+validator.validateBytes(bytes, { maxIssues: 20 }).then((report) => {
+  console.log(JSON.stringify(report.issues));
+  process.exit(report.issues.numErrors + report.issues.numWarnings + report.issues.numInfos > 0 ? 1 : 0);
+}, (error) => { console.log(String(error)); process.exit(1); });
+";
+
+fn node() -> Command {
+    let mut node = Command::new("node");
+    if let Some(folder) = std::env::var_os("CITYWELD_NODE_MODULES") {
+        node.env("NODE_PATH", folder);
+    }
+    node
+}
+
+fn validator_is_present() -> bool {
+    let found = node().args(["-e", "require('gltf-validator')"]).output().is_ok_and(|output| output.status.success());
+    let wanted = std::env::var_os("CITYWELD_NODE_MODULES").is_some();
+    assert!(found || !wanted, "CITYWELD_NODE_MODULES is set, but node finds no gltf-validator there");
+    if !found {
+        println!("skipped: node finds no gltf-validator");
+    }
+    found
+}
+
+fn assert_valid(path: &Path) {
+    let output = node().arg("-e").arg(SCRIPT).arg(path).output().unwrap();
+    assert!(output.status.success(), "{}: {}", path.display(), String::from_utf8_lossy(&output.stdout));
+}
+
+fn sample(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample").join(path)
+}
+
+fn sample_city() -> CityModel {
+    read_city(&sample("city.obj"), &[], &CityOptions::default()).unwrap()
+}
+
+#[test]
+fn the_scene_of_the_sample_is_valid() {
+    if !validator_is_present() {
+        return;
+    }
+    let city = sample_city();
+    let mut reconstruction = read_reconstruction(&sample("sfm")).unwrap();
+    let city_from_sfm = read_start(&sample("start.json")).unwrap().city_from_sfm;
+    let room = tempfile::tempdir().unwrap();
+    let path = room.path().join("scene.glb");
+    let write = |reconstruction: &Reconstruction| {
+        let placed = Some(Placed { reconstruction, city_from_sfm });
+        write_scene(&path, &Scene { title: "best candidate, NOT aligned: \"quoted\" \u{2713}", city: &city, placed })
+    };
+    write(&reconstruction).unwrap();
+    assert_valid(&path);
+    reconstruction.colors.clear();
+    reconstruction.images.clear();
+    write(&reconstruction).unwrap();
+    assert_valid(&path);
+}
+
+#[test]
+fn scenes_with_little_in_them_are_valid() {
+    if !validator_is_present() {
+        return;
+    }
+    let room = tempfile::tempdir().unwrap();
+    let path = room.path().join("scene.glb");
+    for city in [sample_city(), CityModel::default()] {
+        write_scene(&path, &Scene { title: "city alone", city: &city, placed: None }).unwrap();
+        assert_valid(&path);
+    }
+}
+
+#[test]
+fn the_city_colored_by_plane_is_valid() {
+    if !validator_is_present() {
+        return;
+    }
+    let room = tempfile::tempdir().unwrap();
+    let path = room.path().join("planes.glb");
+    let city = sample_city();
+    write_planes_glb(&path, &city, &city_planes(&city)).unwrap();
+    assert_valid(&path);
+}

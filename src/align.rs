@@ -127,7 +127,8 @@ impl Outcome<'_> {
         let scorer = Scorer { votes: &self.scene.votes, field: &self.scene.field, start: self.scene.start };
         let refiner = refiner(self.scene, &scorer, self.scale_is_fixed);
         let of_plane = |rows: &[ProbeOnPlane]| refiner.equations_of_plane(&chart, rows).full();
-        let by_plane = rows.chunk_by(|a, b| a.plane == b.plane).map(of_plane).collect();
+        let planes = rows.chunk_by(|a, b| a.plane == b.plane).filter(|p| p.len() >= FEWEST_ON_PLANE);
+        let by_plane = planes.map(of_plane).collect();
         let start = start_information(&options.start, chart.radius);
         let chart = Chart { center: chart.center + self.city.origin, ..chart };
         Hold { chart, by_plane, start, scale_is_fixed: self.scale_is_fixed }
@@ -191,6 +192,9 @@ fn start_information(start: &Start, radius: f64) -> Matrix7 {
     let information = sigmas.map(|s| s.max(SMALLEST_SIGMA_M).powi(-2));
     Matrix7::from_diagonal(&information.into())
 }
+
+/// One or two points lie on a plane by chance.
+const FEWEST_ON_PLANE: usize = 3;
 
 /// A start that claims to be exact is still only as good as this, metres.
 const SMALLEST_SIGMA_M: f64 = 1e-6;

@@ -96,7 +96,14 @@ pub fn contest(scene: &Scene, scale: Option<f64>, seed: u64, progress: &(dyn Fn(
     for stage in stages(scene) {
         let improve = |c: &Contender| improved(scene, &refiner, &stage, c);
         contenders = contenders.par_iter().map(improve).collect();
+        contenders.retain(|c| scorer.within_reach(&c.refined.city_from_level));
         contenders = distinct(contenders, scene, stage.keep);
+    }
+    // Once more, with a gate as narrow as the residuals allow: what lies beyond is somebody else's facet.
+    let all: Vec<u32> = (0..scene.votes.probes.len() as u32).collect();
+    for c in &mut contenders {
+        let sharp = refiner.sharpen(&all, &c.refined.city_from_level, scene.unit_m);
+        c.refined = refiner.settle(&all, sharp, scene.unit_m, SETTLING_UNITS * scene.unit_m);
     }
     contest.contenders = contenders;
     contest
@@ -115,7 +122,7 @@ fn stages(scene: &Scene) -> [Stage; 3] {
     [
         Stage { panel: votes.panel(400), gates: &[5.0, 5.0, 4.0, 3.3, 2.7], ranking_gate: 2.3, sight: false, keep: 16 },
         Stage { panel: votes.panel(1500), gates: &[2.7, 2.3, 2.0, 1.7, 1.7], ranking_gate: 1.3, sight: true, keep: 6 },
-        Stage { panel: all, gates: &[1.7, 1.3, 1.2, 1.0, 1.0, 1.0], ranking_gate: 1.0, sight: true, keep: 6 },
+        Stage { panel: all, gates: &[1.7, 1.3, 1.0, 1.0], ranking_gate: 1.0, sight: true, keep: 6 },
     ]
 }
 
@@ -134,6 +141,9 @@ fn improved(scene: &Scene, refiner: &Refiner, stage: &Stage, contender: &Contend
     let share = scorer.panel_share(&voters, &pose, gate_m);
     Contender { refined, share, blocked, prior_cost: scorer.prior_cost(&pose), hits: contender.hits }
 }
+
+/// A slide by the votes ends within this many units of the right place.
+const SETTLING_UNITS: f64 = 2.0;
 
 /// Voters of the last ranking; a larger panel changes the third digit.
 const MOST_VOTERS: usize = 3000;

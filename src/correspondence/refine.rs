@@ -15,7 +15,7 @@ use super::field::Hit;
 use super::scoring::{Mover, Scorer};
 use crate::geometry::{Point3, Similarity};
 use crate::planes::{CityPlanes, PlaneId};
-use crate::robust::{Chart, NormalEquations, tukey_weight};
+use crate::robust::{Chart, NormalEquations, Vector7, tukey_weight};
 
 /// How the model errs.
 #[derive(Clone, Copy, Debug)]
@@ -48,8 +48,10 @@ pub struct Refiner<'a> {
 const OUTSIDE_SHARE: f64 = 0.5;
 /// Directions held worse than this are not moved by least squares, metres.
 const HELD_M: f64 = 1.0;
-/// Loose points, of unknown direction, are taken for a facet's own only this close to it, in sigmas of a point.
-const LOOSE_GATE_SIGMAS: f64 = 4.0;
+/// Loose points, of unknown direction, are taken for a facet's own only this close to it, in sigmas of a point ...
+const LOOSE_GATE_SIGMAS: f64 = 2.5;
+/// ... and count for this much of a patch's point, since many of them lie there by chance.
+const LOOSE_WEIGHT: f64 = 0.25;
 /// Probes per task.
 const CHUNK: usize = 512;
 
@@ -82,6 +84,66 @@ impl Refiner<'_> {
         refined
     }
 
+    /// Refines `pose` with a gate that follows the residuals: Tukey's width for their robust sigma, at most `gate_m` (metres of
+    /// the start).
+    pub fn sharpen(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Refined {
+        let mut refined = self.refine(panel, pose, &[gate_m]);
+        for _ in 0..SHARPENING_STEPS {
+            let pose = refined.city_from_level;
+            let rows = self.probes_on_planes(panel, &pose, gate_m);
+            let narrow_m = (TUKEY_SIGMAS * robust_sigma(&rows) / pose.scale).clamp(LEAST_GATE_SHARE * gate_m, gate_m);
+            refined = self.refine(panel, &pose, &[narrow_m]);
+        }
+        refined
+    }
+
+    /// Slides `refined` along what it leaves loose to where most planes find points, as far as `reach_m`, and sharpens again.
+    ///
+    /// The few points of a grazed roof that alone hold a height count for nothing among the votes of the walls; but by the
+    /// root of its points every plane has a say, and at the right height several find theirs at once.
+    pub fn settle(&self, panel: &[u32], refined: Refined, gate_m: f64, reach_m: f64) -> Refined {
+        let spectrum = refined.equations.spectrum();
+        let step_m = LOOSE_GATE_SIGMAS * self.errors.point_sigma_m;
+        let steps = (reach_m / step_m).ceil() as i32;
+        let support = |panel: &[u32], pose: &Similarity| -> f64 {
+            let rows = self.probes_on_planes(panel, pose, gate_m);
+            rows.chunk_by(|a, b| a.plane == b.plane).map(|p| p.iter().map(|r| r.weight).sum::<f64>().sqrt()).sum()
+        };
+        let start = refined.city_from_level;
+        let mut best = start;
+        for k in (0..7).filter(|&k| spectrum.sigmas_m[k] > LOOSE_M) {
+            let direction = spectrum.directions.column(k).into_owned();
+            let free = self.without_bystanders(panel, &refined.chart, &best, &direction, gate_m);
+            let from = best;
+            let mut most = support(&free, &from);
+            for step in (-steps..=steps).filter(|s| *s != 0) {
+                let pose = refined.chart.moved(&from, &(direction * (f64::from(step) * step_m)));
+                let found = support(&free, &pose);
+                if found > most && self.scorer.within_reach(&pose) {
+                    (most, best) = (found, pose);
+                }
+            }
+        }
+        if best == start { refined } else { self.sharpen(panel, &best, gate_m) }
+    }
+
+    /// The panel without the loose points on planes that a motion along `direction` does not leave: they are explained already.
+    fn without_bystanders(
+        &self,
+        panel: &[u32],
+        chart: &Chart,
+        pose: &Similarity,
+        direction: &Vector7,
+        gate_m: f64,
+    ) -> Vec<u32> {
+        let mut stays = vec![false; self.scorer.votes.probes.len()];
+        for row in self.probes_on_planes(panel, pose, gate_m) {
+            let normal = &self.scorer.field.triangles[row.hit.triangle as usize].normal;
+            stays[row.probe as usize] = chart.row(&row.place, normal).dot(direction).abs() < BYSTANDER;
+        }
+        panel.iter().copied().filter(|&i| (i as usize) < self.scorer.votes.firm || !stays[i as usize]).collect()
+    }
+
     /// The same pose with its information, nothing moved.
     pub fn assess(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Refined {
         let chart = self.chart(pose);
@@ -103,9 +165,10 @@ impl Refiner<'_> {
         let loose_gate_m = firm_gate_m.min(LOOSE_GATE_SIGMAS * self.errors.point_sigma_m);
         let row = |&i: &u32| {
             let probe = mover.probe(&votes.probes[i as usize]);
-            let gate_m = if (i as usize) < votes.firm { firm_gate_m } else { loose_gate_m };
+            let is_firm = (i as usize) < votes.firm;
+            let (gate_m, trust) = if is_firm { (firm_gate_m, 1.0) } else { (loose_gate_m, LOOSE_WEIGHT) };
             let hit = field.nearest(&probe, gate_m)?;
-            let weight = tukey_weight(hit.across_m * hit.across_m, gate_m);
+            let weight = trust * tukey_weight(hit.across_m * hit.across_m, gate_m);
             let plane = self.planes.of_facet(field.triangles[hit.triangle as usize].facet);
             (hit.outside_m <= OUTSIDE_SHARE * gate_m && weight > 0.0).then_some(ProbeOnPlane {
                 probe: i,
@@ -150,6 +213,25 @@ impl Refiner<'_> {
         Chart { center: pose.apply(&Point3::origin()), radius }
     }
 }
+
+/// Standard deviation of the residuals, from their median magnitude; metres.
+fn robust_sigma(rows: &[ProbeOnPlane]) -> f64 {
+    let mut across: Vec<f64> = rows.iter().map(|r| r.hit.across_m.abs()).collect();
+    across.sort_by(f64::total_cmp);
+    1.4826 * across.get(across.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Tukey's biweight of this width (in sigmas) is 95 % efficient on Gaussian noise.
+const TUKEY_SIGMAS: f64 = 4.685;
+/// The narrowest gate, as a share of the widest.
+const LEAST_GATE_SHARE: f64 = 0.2;
+/// Pairs settle within some steps.
+const SHARPENING_STEPS: usize = 5;
+
+/// A plane whose distance changes by less than this share of a motion is not left by it.
+const BYSTANDER: f64 = 0.3;
+/// Directions held worse than this may be settled, metres.
+const LOOSE_M: f64 = 0.25;
 
 /// A cloud smaller than this has no turn or scale to speak of.
 const SMALLEST_RADIUS_M: f64 = 1e-3;

@@ -22,6 +22,10 @@ pub struct Scorer<'a> {
 /// house, 3 %.
 const PRIOR_COST: f64 = 0.003;
 
+/// Three sigmas, and some slack for the noise of the cloud itself.
+const REACH_SIGMAS: f64 = 3.2;
+/// Levelling by walls and floors is not better than this, whatever the start says.
+const LEAST_TILT_RAD: f64 = 0.02;
 /// Probes per task when a score is computed in parallel.
 const CHUNK: usize = 512;
 
@@ -60,9 +64,11 @@ impl Scorer<'_> {
         PRIOR_COST * off.iter().map(|o| o * o).sum::<f64>()
     }
 
-    /// True where a pose is within three sigmas of the start in every freedom that has one.
+    /// True where a pose is within three sigmas of the start in every freedom.
     pub fn within_reach(&self, city_from_level: &Similarity) -> bool {
-        self.offsets(city_from_level).iter().all(|o| o.abs() <= 3.0)
+        let tilt = city_from_level.rotation.matrix()[(2, 2)].clamp(-1.0, 1.0).acos();
+        tilt <= REACH_SIGMAS * self.start.tilt_sigma_rad.max(LEAST_TILT_RAD)
+            && self.offsets(city_from_level).iter().all(|o| o.abs() <= REACH_SIGMAS)
     }
 
     /// How many sigmas a pose is from the start: heading, log scale, two horizontal axes, height.

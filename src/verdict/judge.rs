@@ -39,7 +39,7 @@ const LEAST_BALANCE: f64 = 0.30;
 /// Without cameras nothing speaks against a pose but what it leaves unexplained: half of the vote must lie on the city.
 const LEAST_BALANCE_WITHOUT_CAMERAS: f64 = 0.50;
 /// A rival that reaches this share of the best balance is taken seriously.
-const RIVAL_SHARE: f64 = 0.75;
+const RIVAL_SHARE: f64 = 0.85;
 /// Poses that differ by less than this along what is held are one pose, metres at the scene's radius.
 const SAME_M: f64 = 0.8;
 /// Rivals whose balance is below this share are not worth telling.

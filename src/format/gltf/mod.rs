@@ -9,6 +9,8 @@ mod check;
 mod container;
 mod mesh;
 mod nodes;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 
@@ -99,9 +101,12 @@ pub fn read_gltf(bytes: &[u8], folder: &Path) -> Result<GltfFile, GltfError> {
     let document = check::document(json)?;
     let placed = nodes::place(&nodes, document.as_json())?;
     let mut reader = MeshReader::new(&document, Buffers::new(blob, folder));
+    for place in &placed {
+        reader.check(place).map_err(|error| error.of(&place.name))?;
+    }
     let mut file = GltfFile::default();
-    for place in placed {
-        reader.read(&place, &mut file).map_err(|error| error.of(&place.name))?;
+    for place in &placed {
+        reader.read(place, &mut file).map_err(|error| error.of(&place.name))?;
     }
     Ok(file)
 }

@@ -97,6 +97,7 @@ impl GltfError {
 /// Reads glTF JSON or GLB. Further buffers are looked for in `folder`, and nowhere else.
 pub fn read_gltf(bytes: &[u8], folder: &Path) -> Result<GltfFile, GltfError> {
     let (json, blob) = if is_glb(bytes) { container::split(bytes)? } else { (bytes, None) };
+    check::version(json)?;
     let nodes = nodes::read(json)?;
     let document = check::document(json)?;
     let placed = nodes::place(&nodes, document.as_json())?;

@@ -1,6 +1,6 @@
 //! One polygon of a file to planar facets.
 
-use super::triangulate::{halves, triangulate};
+use super::triangulate::triangulate;
 use super::warning::CityDefect;
 use super::{Facet, ObjectId};
 use crate::geometry::{Plane, Point3, Vector3};
@@ -70,46 +70,49 @@ impl<'a> Shaper<'a> {
         };
         let polygon = Polygon { face, ring, plane, centroid };
         let first = self.triangles.len();
-        if !self.cut(&polygon) {
+        let Some(is_clean) = self.cut(&polygon) else {
             return self.defects.push((face, CityDefect::Tangled));
-        }
+        };
         let off_m = self.corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
         if off_m > flat_tolerance(extent, self.precision_m) {
             self.defects.push((face, CityDefect::NonPlanar { worst_m: off_m }));
-            self.add_split(first, object);
-        } else {
-            let area = self.triangles[first..].iter().map(|triangle| area_of(self.positions(triangle))).sum();
-            let triangles = first as u32..self.triangles.len() as u32;
-            self.facets.push(Facet { outline: polygon.ring, plane, area, object, triangles });
+            return self.add_split(first, object);
         }
+        // Triangles of a flat ring cover what it winds round, unless it overlaps itself.
+        let area = if is_clean { area_vector.norm() } else { self.covered_area(first) };
+        let triangles = first as u32..self.triangles.len() as u32;
+        self.facets.push(Facet { outline: polygon.ring, plane, area, object, triangles });
     }
 
-    /// Adds the polygon's triangles; false where it is too tangled.
-    fn cut(&mut self, polygon: &Polygon) -> bool {
+    /// Adds the polygon's triangles and says whether it is free of overlaps; `None` where it is too tangled.
+    fn cut(&mut self, polygon: &Polygon) -> Option<bool> {
         let ring = &polygon.ring;
         if let [a, b, c] = ring[..] {
             self.triangles.push([a, b, c]);
-            return true;
+            return Some(true);
         }
         if let [a, b, c, d] = self.corners[..]
-            && let Some(halves) =
-                halves(|corners| doubled_area(corners.map(|at| [a, b, c, d][at]), &polygon.plane.normal))
+            && let Some(halves) = halves([a, b, c, d], &polygon.plane.normal)
         {
             self.triangles.extend(halves.map(|half| half.map(|at| ring[at])));
-            return true;
+            return Some(true);
         }
         let [right, up] = axes(&polygon.plane.normal);
         let centroid = polygon.centroid;
         self.flat.clear();
-        self.flat
-            .extend(self.corners.iter().map(|corner| [right.dot(&(corner - centroid)), up.dot(&(corner - centroid))]));
-        let Some(made) = triangulate(&self.flat) else { return false };
+        let in_plane = |corner: &Point3<f64>| [right.dot(&(corner - centroid)), up.dot(&(corner - centroid))];
+        self.flat.extend(self.corners.iter().map(in_plane));
+        let made = triangulate(&self.flat)?;
         let first_new = self.vertices.len() + self.new_vertices.len();
         self.new_vertices.extend(made.crossings.iter().map(|[x, y]| centroid + right * *x + up * *y));
         let vertex_of = |at: usize| ring.get(at).copied().unwrap_or((first_new + at - ring.len()) as u32);
         self.triangles.extend(made.triangles.iter().map(|triangle| triangle.map(vertex_of)));
         self.defects.extend(made.overlaps.then_some((polygon.face, CityDefect::SelfIntersecting)));
-        true
+        Some(!made.overlaps)
+    }
+
+    fn covered_area(&self, first: usize) -> f64 {
+        self.triangles[first..].iter().map(|triangle| area_of(self.positions(triangle))).sum()
     }
 
     /// Makes a facet of every triangle from `first` on that has a plane, and forgets the others.
@@ -146,7 +149,7 @@ impl<'a> Shaper<'a> {
 
 /// How far corners may lie off their plane, metres.
 fn flat_tolerance(extent_m: f64, precision_m: f64) -> f64 {
-    (FLAT_SHARE * extent_m).min(FLAT_LIMIT_M).max(FLAT_DIGITS * precision_m)
+    (FLAT_SHARE * extent_m).max(FLAT_DIGITS * precision_m).min(FLAT_LIMIT_M)
 }
 
 fn centroid(corners: &[Point3<f64>]) -> Point3<f64> {
@@ -171,9 +174,16 @@ fn area_of([a, b, c]: [Point3<f64>; 3]) -> f64 {
     (b - a).cross(&(c - a)).norm() / 2.0
 }
 
-/// Twice the area as seen from where the normal points to, negative when it runs clockwise.
-fn doubled_area([a, b, c]: [Point3<f64>; 3], normal: &Vector3<f64>) -> f64 {
-    normal.dot(&(b - a).cross(&(c - a)))
+/// Cuts a quadrilateral along the diagonal that leaves the larger smaller half. `None` where neither leaves two halves
+/// that run the right way round, as when it crosses itself.
+fn halves([a, b, c, d]: [Point3<f64>; 4], normal: &Vector3<f64>) -> Option<[[usize; 3]; 2]> {
+    let doubled_area = |one: Vector3<f64>, other: Vector3<f64>| normal.dot(&one.cross(&other));
+    let from_a = doubled_area(b - a, c - a).min(doubled_area(c - a, d - a));
+    let from_b = doubled_area(c - b, d - b).min(doubled_area(d - b, a - b));
+    if from_a.max(from_b) <= 0.0 {
+        return None;
+    }
+    Some(if from_a >= from_b { [[0, 1, 2], [0, 2, 3]] } else { [[1, 2, 3], [1, 3, 0]] })
 }
 
 /// Two unit vectors in the plane that with the normal form a right-handed frame.

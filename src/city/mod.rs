@@ -11,6 +11,8 @@ mod read;
 mod recognise;
 mod source;
 mod subset;
+#[cfg(test)]
+mod tests;
 mod triangulate;
 mod validate;
 mod warning;

@@ -12,6 +12,9 @@ use crate::geometry::Point3;
 /// Vertices looked at to find the precision; more would tell nothing new.
 const PRECISION_SAMPLES: usize = 10_000;
 
+/// Decimals down to which steps may be rounding: a model on a grid of metres or decimetres is of that shape.
+const COARSEST_DECIMALS: i32 = 2;
+
 /// Decimals beyond which nobody measures: micrometres.
 const FINEST_DECIMALS: i32 = 6;
 
@@ -155,7 +158,7 @@ fn written_precision(positions: &[Point3<f64>], spacing_m: f64) -> f64 {
         let scaled = value * per_metre;
         (scaled - scaled.round()).abs() > MULTIPLE_TOLERANCE.max(spacing_m * per_metre)
     };
-    let powers = (0..=FINEST_DECIMALS).map(|decimals| 10_f64.powi(decimals));
+    let powers = (COARSEST_DECIMALS..=FINEST_DECIMALS).map(|decimals| 10_f64.powi(decimals));
     let found = powers.take_while(|per_metre| spacing_m * per_metre < TELLING_SPACING).find(|&per_metre| {
         let odd = sample.iter().filter(|&&value| is_odd(value, per_metre)).count();
         odd as f64 <= ODD_SHARE * sample.len() as f64

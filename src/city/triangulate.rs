@@ -38,15 +38,6 @@ fn doubled_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Cuts a quadrilateral along the diagonal that leaves the larger smaller half; `None` where neither leaves two halves
-/// that run the right way round, as when it crosses itself. `signed_area` is of corners by number.
-pub(super) fn halves(signed_area: impl Fn([usize; 3]) -> f64) -> Option<[[usize; 3]; 2]> {
-    let smaller = |halves: &[[usize; 3]; 2]| signed_area(halves[0]).min(signed_area(halves[1]));
-    let (first, second) = ([[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]);
-    let better = if smaller(&first) >= smaller(&second) { first } else { second };
-    (smaller(&better) > 0.0).then_some(better)
-}
-
 /// Delaunay triangulation held by the edges, then the triangles that lie an odd number of edges inside.
 /// `None` where two edges cross between points.
 fn constrained(points: &[[f64; 2]], edges: &[[usize; 2]]) -> Option<Vec<[usize; 3]>> {
@@ -163,4 +154,97 @@ fn crossing([a, b, c, d]: [[f64; 2]; 4]) -> Option<(f64, f64, [f64; 2])> {
     let along_second = c_side / (c_side - d_side);
     let point = [a[0] + along_first * (b[0] - a[0]), a[1] + along_first * (b[1] - a[1])];
     Some((along_first, along_second, point))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Area of the triangles; all run counter-clockwise.
+    fn area(ring: &[[f64; 2]]) -> Option<f64> {
+        let made = triangulate(ring)?;
+        let points = [ring, &made.crossings].concat();
+        let areas = made.triangles.iter().map(|&[a, b, c]| doubled_area(points[a], points[b], points[c]) / 2.0);
+        assert!(areas.clone().all(|area| area >= 0.0));
+        Some(areas.sum())
+    }
+
+    fn overlaps(ring: &[[f64; 2]]) -> bool {
+        triangulate(ring).unwrap().overlaps
+    }
+
+    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
+
+    #[test]
+    fn concave_rings_keep_their_area() {
+        let l = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
+        assert_eq!(area(&l), Some(6.0));
+        assert_eq!(triangulate(&l).unwrap().triangles.len(), 4);
+        assert!(!overlaps(&l));
+    }
+
+    #[test]
+    fn a_star_of_many_corners_keeps_its_area() {
+        let star: Vec<[f64; 2]> = (0..2000)
+            .map(|at| {
+                let (sin, cos) = (f64::from(at) * std::f64::consts::TAU / 2000.0).sin_cos();
+                let radius = if at % 2 == 0 { 10.0 } else { 4.0 };
+                [radius * cos, radius * sin]
+            })
+            .collect();
+        let expected = 1000.0 * 10.0 * 4.0 * (std::f64::consts::TAU / 2000.0).sin();
+        assert!((area(&star).unwrap() - expected).abs() < 1e-9 * expected);
+        assert_eq!(triangulate(&star).unwrap().triangles.len(), 1998);
+    }
+
+    #[test]
+    fn a_bridged_hole_stays_a_hole() {
+        let hole = [[2.0, 2.0], [2.0, 4.0], [4.0, 4.0], [4.0, 2.0], [2.0, 2.0]];
+        let ring = [&SQUARE[..], &SQUARE[..1], &hole].concat();
+        assert_eq!(area(&ring), Some(96.0));
+        assert!(!overlaps(&ring));
+    }
+
+    #[test]
+    fn a_hole_that_shares_part_of_an_edge_stays_a_hole() {
+        let hole = [[4.0, 0.0], [4.0, 2.0], [7.0, 2.0], [7.0, 0.0], [4.0, 0.0]];
+        let ring = [&SQUARE[..1], &hole, &SQUARE[1..]].concat();
+        assert_eq!(area(&ring), Some(94.0));
+    }
+
+    #[test]
+    fn a_spike_covers_nothing() {
+        let ring = [&SQUARE[..2], &[[15.0, 0.0]], &SQUARE[1..]].concat();
+        assert_eq!(area(&ring), Some(100.0));
+        assert!(!overlaps(&ring));
+    }
+
+    #[test]
+    fn corners_on_an_edge_and_repeated_places_change_nothing() {
+        let ring = [&SQUARE[..1], &[[3.0, 0.0], [6.0, 0.0], [6.0, 0.0]], &SQUARE[1..], &SQUARE[..1]].concat();
+        assert_eq!(area(&ring), Some(100.0));
+    }
+
+    #[test]
+    fn a_ring_that_crosses_itself_keeps_what_lies_inside_an_odd_number_of_times() {
+        // Two squares of 1 and 9 that meet in a crossing.
+        let ring = [[0.0, 0.0], [3.0, 0.0], [3.0, 4.0], [4.0, 4.0], [4.0, 3.0], [0.0, 3.0]];
+        assert!((area(&ring).unwrap() - 10.0).abs() < 1e-12);
+        assert!(overlaps(&ring));
+    }
+
+    #[test]
+    fn no_ring_makes_it_panic() {
+        use rand_chacha::ChaCha8Rng;
+        use rand_chacha::rand_core::{Rng, SeedableRng};
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        for round in 0..3000 {
+            let corners = 3 + random.next_u64() % 9;
+            // A coarse grid makes collinear, repeated and touching corners the rule.
+            let grid = if round % 2 == 0 { 5.0 } else { 1e6 };
+            let mut coordinate = || (grid * (random.next_u64() as f64 / u64::MAX as f64)).round();
+            let ring: Vec<[f64; 2]> = (0..corners).map(|_| [coordinate(), coordinate()]).collect();
+            area(&ring);
+        }
+    }
 }

@@ -4,6 +4,8 @@ use gltf::json;
 use gltf::json::accessor::{ComponentType, GenericComponentType, IndexComponentType, Type};
 use gltf::json::validation::{Checked, Error, Validate};
 
+use serde::Deserialize;
+
 use super::buffers::Buffers;
 use super::nodes::{json_error, missing};
 use super::{GltfError, GltfProblem};
@@ -21,9 +23,6 @@ const LOOKS: [&str; 6] =
 /// Parses the JSON and checks what all geometry hangs on.
 pub(super) fn document(json: &[u8]) -> Result<gltf::Document, GltfError> {
     let root: json::Root = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
-    if !root.asset.version.starts_with("2.") {
-        return Err(GltfError::at("asset.version", GltfProblem::Version { found: root.asset.version }));
-    }
     check_extensions(&root)?;
     check_primitives(&root)?;
     let mut first = None;
@@ -31,8 +30,7 @@ pub(super) fn document(json: &[u8]) -> Result<gltf::Document, GltfError> {
         let path = path();
         let part = path.as_str().split(['.', '[']).next().unwrap_or_default();
         if first.is_none() && GEOMETRY.contains(&part) && is_grave(path.as_str(), error) {
-            first =
-                Some(GltfError::at(path.as_str(), GltfProblem::Invalid { what: format!("invalid value: {error}") }));
+            first = Some(GltfError::at(path.as_str(), GltfProblem::Invalid { what: explained(error).to_owned() }));
         }
     });
     match first {
@@ -41,12 +39,39 @@ pub(super) fn document(json: &[u8]) -> Result<gltf::Document, GltfError> {
     }
 }
 
+/// The version stands before everything else: the parts of glTF 1 have the same names and other types.
+pub(super) fn version(json: &[u8]) -> Result<(), GltfError> {
+    #[derive(Deserialize)]
+    struct Versioned {
+        asset: Asset,
+    }
+    #[derive(Deserialize)]
+    struct Asset {
+        version: String,
+    }
+    let Versioned { asset } = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    if !asset.version.starts_with("2.") {
+        return Err(GltfError::at("asset.version", GltfProblem::Version { found: asset.version }));
+    }
+    Ok(())
+}
+
 /// Bounds are not read, materials neither, and attributes of odd names are passed over.
 fn is_grave(path: &str, error: Error) -> bool {
     let is_bound = path.ends_with(".min") || path.ends_with(".max");
     let is_looks = path.contains(".material") || path.contains(".extensions") || path.contains(".targets");
     let is_odd_name = path.contains(".attributes") && error == Error::Invalid;
     !(is_bound || is_looks || is_odd_name)
+}
+
+fn explained(error: Error) -> &'static str {
+    match error {
+        Error::IndexOutOfBounds => "index of something that does not exist",
+        Error::Invalid => "value is invalid",
+        Error::Missing => "value is missing",
+        Error::Oversize => "number is too large",
+        _ => "value is not supported",
+    }
 }
 
 fn check_extensions(root: &json::Root) -> Result<(), GltfError> {

@@ -1,8 +1,8 @@
 //! Primitives to triangles, brought to the scene's frame.
 
-use gltf::Document;
 use gltf::mesh::Mode;
 use gltf::mesh::util::ReadIndices;
+use gltf::{Document, Primitive, Semantic};
 use nalgebra::Vector3;
 
 use super::buffers::Buffers;
@@ -16,76 +16,92 @@ const COORDINATE_LIMIT: f64 = 1e9;
 /// this many is what a large machine has.
 const ELEMENT_LIMIT: usize = 1 << 26;
 
-/// Reads meshes, and counts how much it has read.
+/// Reads meshes that were checked.
 pub(super) struct MeshReader<'a> {
     document: &'a Document,
     buffers: Buffers<'a>,
+    /// Vertices and indices of each mesh that was checked.
+    sizes: Vec<Option<usize>>,
     elements: usize,
 }
 
 impl<'a> MeshReader<'a> {
     pub fn new(document: &'a Document, buffers: Buffers<'a>) -> MeshReader<'a> {
-        MeshReader { document, buffers, elements: 0 }
+        let sizes = vec![None; document.as_json().meshes.len()];
+        MeshReader { document, buffers, sizes, elements: 0 }
     }
 
-    /// Adds one mesh where it stands.
-    pub fn read(&mut self, placed: &Placed, file: &mut GltfFile) -> Result<(), GltfError> {
-        let count = self.document.as_json().meshes.len();
-        let mesh = self.document.meshes().nth(placed.mesh);
-        let mesh = mesh.ok_or_else(|| GltfError::at(&placed.place, missing("mesh", placed.mesh, count)))?;
-        let (positions, triangles) = (Vec::new(), Vec::new());
-        let mut part = GltfPart { name: placed.name.clone(), positions, triangles, spacing_m: 0.0 };
-        for primitive in mesh.primitives() {
-            let place = format!("meshes[{}].primitives[{}]", placed.mesh, primitive.index());
-            if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
-                file.without_surface += 1;
-                file.first_without_surface.get_or_insert_with(|| placed.name.clone());
-                continue;
-            }
-            self.read_primitive(&primitive, &place, placed, &mut part)?;
-        }
-        if !part.triangles.is_empty() {
-            file.parts.push(part);
+    /// Checks the mesh, and that there is room for it once more. To be called for every node before any is read.
+    pub fn check(&mut self, placed: &Placed) -> Result<(), GltfError> {
+        let size = match self.sizes.get(placed.mesh) {
+            Some(Some(size)) => *size,
+            _ => self.check_mesh(placed)?,
+        };
+        self.elements = self.elements.saturating_add(size);
+        if self.elements > ELEMENT_LIMIT {
+            return Err(GltfError::at(&placed.place, GltfProblem::TooLarge { limit: ELEMENT_LIMIT }));
         }
         Ok(())
     }
 
+    fn check_mesh(&mut self, placed: &Placed) -> Result<usize, GltfError> {
+        let root = self.document.as_json();
+        let missing_mesh = || GltfError::at(&placed.place, missing("mesh", placed.mesh, root.meshes.len()));
+        let mesh = self.document.meshes().nth(placed.mesh).ok_or_else(missing_mesh)?;
+        let mut size: usize = 0;
+        for primitive in mesh.primitives().filter(has_surface) {
+            let place = format!("meshes[{}].primitives[{}]", placed.mesh, primitive.index());
+            let invalid = |what: &str| GltfError::at(&place, GltfProblem::Invalid { what: what.to_owned() });
+            let positions = primitive.get(&Semantic::Positions).ok_or_else(|| invalid("primitive has no POSITION"))?;
+            check::positions(root, positions.index(), &mut self.buffers)?;
+            size = size.saturating_add(positions.count());
+            if let Some(indices) = primitive.indices() {
+                check::indices(root, indices.index(), &mut self.buffers)?;
+                size = size.saturating_add(indices.count());
+            }
+        }
+        self.sizes[placed.mesh] = Some(size);
+        Ok(size)
+    }
+
+    /// Adds one mesh where it stands.
+    pub fn read(&self, placed: &Placed, file: &mut GltfFile) -> Result<(), GltfError> {
+        let Some(mesh) = self.document.meshes().nth(placed.mesh) else { return Ok(()) };
+        let (positions, triangles) = (Vec::new(), Vec::new());
+        let mut part = GltfPart { name: placed.name.clone(), positions, triangles, spacing_m: 0.0 };
+        for primitive in mesh.primitives() {
+            if has_surface(&primitive) {
+                let place = || format!("meshes[{}].primitives[{}]", placed.mesh, primitive.index());
+                self.read_primitive(&primitive, placed, &mut part)
+                    .map_err(|problem| GltfError::at(place(), problem))?;
+            } else {
+                file.without_surface += 1;
+                file.first_without_surface.get_or_insert_with(|| placed.name.clone());
+            }
+        }
+        file.parts.extend((!part.triangles.is_empty()).then_some(part));
+        Ok(())
+    }
+
     fn read_primitive(
-        &mut self,
-        primitive: &gltf::Primitive<'_>,
-        place: &str,
+        &self,
+        primitive: &Primitive<'_>,
         placed: &Placed,
         part: &mut GltfPart,
-    ) -> Result<(), GltfError> {
-        let root = self.document.as_json();
-        let Some(positions) = primitive.get(&gltf::Semantic::Positions) else {
-            let what = "primitive has no POSITION".to_owned();
-            return Err(GltfError::at(place, GltfProblem::Invalid { what }));
-        };
-        check::positions(root, positions.index(), &mut self.buffers)?;
-        if let Some(indices) = primitive.indices() {
-            check::indices(root, indices.index(), &mut self.buffers)?;
-        }
-        let corners = primitive.indices().map_or(positions.count(), |indices| indices.count());
-        self.elements = self.elements.saturating_add(positions.count()).saturating_add(corners);
-        if self.elements > ELEMENT_LIMIT {
-            return Err(GltfError::at(place, GltfProblem::TooLarge { limit: ELEMENT_LIMIT }));
-        }
+    ) -> Result<(), GltfProblem> {
         let reader = primitive.reader(|buffer| self.buffers.bytes(buffer.index()));
-        let Some(positions) = reader.read_positions() else {
-            let what = "POSITION cannot be read".to_owned();
-            return Err(GltfError::at(place, GltfProblem::Invalid { what }));
-        };
+        let unreadable = || GltfProblem::Invalid { what: "POSITION cannot be read".to_owned() };
+        let positions = reader.read_positions().ok_or_else(unreadable)?;
         let first = part.positions.len();
-        let shown = place_vertices(positions, placed, part).map_err(|problem| GltfError::at(place, problem))?;
-        let indices = match reader.read_indices() {
+        let vertices = place_vertices(positions, placed, part)?;
+        let indices: Vec<u32> = match reader.read_indices() {
             Some(ReadIndices::U8(indices)) => indices.map(u32::from).collect(),
             Some(ReadIndices::U16(indices)) => indices.map(u32::from).collect(),
             Some(ReadIndices::U32(indices)) => indices.collect(),
-            None => (0..shown as u32).collect::<Vec<u32>>(),
+            None => (0..vertices as u32).collect(),
         };
-        if let Some(&index) = indices.iter().find(|&&index| index as usize >= shown) {
-            return Err(GltfError::at(place, GltfProblem::IndexOutOfRange { index, vertices: shown }));
+        if let Some(&index) = indices.iter().find(|&&index| index as usize >= vertices) {
+            return Err(GltfProblem::IndexOutOfRange { index, vertices });
         }
         let is_mirrored = placed.linear.determinant() < 0.0;
         let turned = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
@@ -93,6 +109,10 @@ impl<'a> MeshReader<'a> {
         part.triangles.extend(triangles_of(primitive.mode(), &indices).map(moved));
         Ok(())
     }
+}
+
+fn has_surface(primitive: &Primitive<'_>) -> bool {
+    !matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip)
 }
 
 /// Adds the vertices in the scene's frame; returns how many they are.

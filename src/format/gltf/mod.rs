@@ -9,6 +9,8 @@ mod check;
 mod container;
 mod mesh;
 mod nodes;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 
@@ -95,13 +97,17 @@ impl GltfError {
 /// Reads glTF JSON or GLB. Further buffers are looked for in `folder`, and nowhere else.
 pub fn read_gltf(bytes: &[u8], folder: &Path) -> Result<GltfFile, GltfError> {
     let (json, blob) = if is_glb(bytes) { container::split(bytes)? } else { (bytes, None) };
+    check::version(json)?;
     let nodes = nodes::read(json)?;
     let document = check::document(json)?;
     let placed = nodes::place(&nodes, document.as_json())?;
     let mut reader = MeshReader::new(&document, Buffers::new(blob, folder));
+    for place in &placed {
+        reader.check(place).map_err(|error| error.of(&place.name))?;
+    }
     let mut file = GltfFile::default();
-    for place in placed {
-        reader.read(&place, &mut file).map_err(|error| error.of(&place.name))?;
+    for place in &placed {
+        reader.read(place, &mut file).map_err(|error| error.of(&place.name))?;
     }
     Ok(file)
 }

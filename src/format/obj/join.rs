@@ -81,9 +81,8 @@ impl Joined {
         let (objects_before, groups_before) = (self.objects.len() - 1, self.groups.len() - 1);
         let (open_object, open_group) = (self.open_object, self.open_group);
         let object_of = |id: usize| if id == CONTINUED { open_object } else { objects_before + id };
-        let group_of = |id: Option<usize>| {
-            id.map_or(None, |id| if id == CONTINUED { open_group } else { Some(groups_before + id) })
-        };
+        let group_of =
+            |id: Option<usize>| id.and_then(|id| if id == CONTINUED { open_group } else { Some(groups_before + id) });
         self.objects.extend(piece.objects.drain(1..));
         self.groups.extend(piece.groups.drain(1..));
         let mut face = self.file.face_ends.len() - piece.face_sizes.len();

@@ -1,0 +1,219 @@
+use std::path::Path;
+
+use super::build::build;
+use super::source::Source;
+use super::*;
+use crate::format::obj::read_obj;
+
+fn source(role: CityRole, text: &str) -> Source {
+    Source::from_obj(Path::new("folder/block.obj"), role, CityUp::Z, read_obj(text.as_bytes()).unwrap())
+}
+
+fn model(text: &str) -> CityModel {
+    sound(build(vec![source(CityRole::City, text)]).unwrap())
+}
+
+/// Holds for every model, whatever it was read from.
+fn sound(model: CityModel) -> CityModel {
+    let mut next = 0;
+    for facet in &model.facets {
+        assert!((facet.object.0 as usize) < model.objects.len());
+        assert_eq!(facet.triangles.start, next, "triangles lie in the order of facets");
+        next = facet.triangles.end;
+        assert!((facet.plane.normal.norm() - 1.0).abs() < 1e-12);
+        let mut covered = 0.0;
+        for [a, b, c] in model.triangles_of(facet) {
+            let doubled = (b - a).cross(&(c - a));
+            assert!(doubled.dot(&facet.plane.normal) >= -1e-9, "triangles run as their facet does");
+            covered += doubled.norm() / 2.0;
+        }
+        assert!((covered - facet.area).abs() < 1e-4 * facet.area + 1e-9, "{covered} {}", facet.area);
+    }
+    assert_eq!(next as usize, model.triangles.len());
+    assert!(model.triangles.iter().flatten().all(|&at| (at as usize) < model.vertices.len()));
+    model
+}
+
+fn defects(model: &CityModel) -> Vec<(CityDefect, u64, Option<u32>)> {
+    model.warnings.iter().map(|warning| (warning.defect.clone(), warning.count, warning.example.line)).collect()
+}
+
+/// A box of 2 x 3 x 4 with its sides outward, at a place of the national grid.
+const BOX: &str = "o box\nv 90851 435670 0\nv 90853 435670 0\nv 90853 435673 0\nv 90851 435673 0\n\
+    v 90851 435670 4\nv 90853 435670 4\nv 90853 435673 4\nv 90851 435673 4\n\
+    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+#[test]
+fn a_box_has_six_outward_facets_and_nothing_to_warn_of() {
+    let model = model(BOX);
+    assert_eq!(model.warnings, []);
+    assert_eq!((model.facets.len(), model.triangles.len(), model.vertices.len()), (6, 12, 8));
+    let centre = nalgebra::center(&model.bounds().unwrap().0, &model.bounds().unwrap().1);
+    assert!(model.facets.iter().all(|facet| facet.plane.signed_distance(&centre) < -0.9));
+    let areas: Vec<f64> = model.facets.iter().map(|facet| facet.area).collect();
+    assert_eq!(areas, [6.0, 6.0, 8.0, 12.0, 8.0, 12.0]);
+}
+
+#[test]
+fn vertices_are_small_and_the_origin_gives_them_back() {
+    let model = model(BOX);
+    let (low, high) = model.bounds().unwrap();
+    assert!(low.coords.amax() < 10.0 && high.coords.amax() < 10.0);
+    assert_eq!(model.origin, model.origin.map(f64::round));
+    assert_eq!(low + model.origin, Point3::new(90851.0, 435670.0, 0.0));
+}
+
+#[test]
+fn one_stray_vertex_does_not_move_the_origin() {
+    let model = model(&format!("{BOX}v 0 0 0\nf 1 2 9\n"));
+    assert!((model.origin - Vector3::new(90852.0, 435671.0, 2.0)).amax() <= 3.0);
+}
+
+#[test]
+fn files_share_one_origin_and_their_vertices() {
+    let ground = "o ground\nv 90851 435670 0\nv 90853 435670 0\nv 90853 435600 0\nf 1 3 2\n";
+    let sources = vec![source(CityRole::City, BOX), source(CityRole::Terrain, ground)];
+    let model = sound(build(sources).unwrap());
+    assert_eq!(model.vertices.len(), 9, "two corners of the ground are the box's");
+    assert_eq!(model.objects, ["box", "ground"]);
+    let roles: Vec<_> =
+        model.sources.iter().map(|part| (part.role, part.facets.clone(), part.objects.clone())).collect();
+    assert_eq!(roles, [(CityRole::City, 0..6, 0..1), (CityRole::Terrain, 6..7, 1..2)]);
+    assert_eq!(model.warnings, [], "terrain is open by its nature");
+}
+
+#[test]
+fn y_up_is_turned_to_z_up() {
+    let file = read_obj(b"v 0 0 0\nv 1 0 0\nv 1 2 0\nf 1 2 3\n").unwrap();
+    let source = Source::from_obj(Path::new("block.obj"), CityRole::City, CityUp::Y, file);
+    let model = build(vec![source]).unwrap();
+    assert_eq!(model.vertices[2] + model.origin, Point3::new(1.0, 0.0, 2.0));
+    assert_eq!(model.facets[0].plane.normal, Vector3::new(0.0, -1.0, 0.0));
+}
+
+#[test]
+fn objects_are_buildings_and_in_a_lone_object_groups_are() {
+    let faces = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+    let names = |text: &str| model(&format!("{faces}{text}")).objects;
+    assert_eq!(names("o A\ng roof\nf 1 2 3\ng wall\nf 1 2 3\no B\nf 1 2 3\n"), ["A", "B"]);
+    assert_eq!(names("o scene\ng A\nf 1 2 3\ng B\nf 1 2 3\ng A\nf 1 2 3\n"), ["A", "B"]);
+    assert_eq!(names("g A\nf 1 2 3\n"), ["A"]);
+    assert_eq!(names("o A\ng a\nf 1 2 3\n"), ["A"]);
+    assert_eq!(names("f 1 2 3\n"), ["block"]);
+    assert_eq!(names("f 1 2 3\no A\nf 1 2 3\no A\nf 1 2 3\n"), ["block", "A", "A"]);
+    assert_eq!(names("f 1 2 3\ng A\nf 1 2 3\n"), ["block", "A"]);
+}
+
+#[test]
+fn non_planar_polygons_become_planar_triangles() {
+    let model = model("o roof\nv 0 0 0\nv 10 0 0\nv 10 10 1\nv 0 10 0\nf 1 2 3 4\n");
+    assert_eq!(model.facets.len(), 2);
+    assert!(model.facets.iter().all(|facet| facet.outline.len() == 3));
+    let [(CityDefect::NonPlanar { worst_m }, 1, Some(6)), ..] = defects(&model)[..] else {
+        panic!("{:?}", model.warnings);
+    };
+    assert!((worst_m - 0.25).abs() < 0.01, "a corner a metre up lifts the mean plane by a quarter");
+}
+
+#[test]
+fn rounding_to_the_files_digits_is_no_fold() {
+    let model = model("v 0 0 0\nv 10 0 0.004\nv 10 10 0\nv 0 10 0.004\nf 1 2 3 4\n");
+    assert_eq!(model.facets.len(), 1, "{:?}", model.warnings);
+}
+
+#[test]
+fn faces_without_area_are_left_out() {
+    let text = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\nf 1 2 1 2\nf 1 2 4\n";
+    let model = model(text);
+    assert_eq!(model.facets.len(), 1);
+    assert_eq!(defects(&model)[0], (CityDefect::ZeroArea, 3, Some(5)));
+}
+
+#[test]
+fn repeated_corners_and_vertices_are_joined() {
+    let model = model("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -0 0 0\nv 1 0 0\nf 1 2 2 3 4 5\nf 4 3 6 1\n");
+    assert_eq!(model.facets[0].outline, [0, 1, 2, 3]);
+    assert_eq!(defects(&model)[0], (CityDefect::DuplicateVertices, 2, Some(7)));
+    assert_eq!(model.vertices.len(), 4);
+}
+
+#[test]
+fn polygons_that_cross_themselves_get_a_corner_at_the_crossing() {
+    let model = model("v 0 0 5\nv 3 0 5\nv 3 4 5\nv 4 4 5\nv 4 3 5\nv 0 3 5\nf 1 2 3 4 5 6\nf 1 2 3 4 5 6\n");
+    assert!((model.facets[0].area - 10.0).abs() < 1e-12);
+    assert_eq!(model.vertices.len(), 8, "each polygon adds its own crossing");
+    assert_eq!(defects(&model)[0], (CityDefect::SelfIntersecting, 2, Some(7)));
+    assert_eq!(model.vertices[6] + model.origin, Point3::new(3.0, 3.0, 5.0));
+}
+
+#[test]
+fn a_facet_turned_round_disagrees_with_its_neighbours() {
+    let model = model(&BOX.replace("f 5 6 7 8", "f 8 7 6 5"));
+    assert_eq!(defects(&model), [(CityDefect::MixedOrientation { edges: 4 }, 1, Some(11))]);
+}
+
+#[test]
+fn a_box_without_ground_is_an_open_shell() {
+    let model = model(&BOX.replace("f 4 3 2 1\n", ""));
+    assert_eq!(defects(&model), [(CityDefect::OpenShell { open_edges: 4, edges: 12 }, 1, Some(11))]);
+}
+
+#[test]
+fn walls_that_stand_twice_are_told_by_their_sides() {
+    let model = model(&format!("{BOX}f 6 7 8 5\no party wall\nf 8 5 1 4\n"));
+    assert_eq!(model.facets.len(), 8, "none is left out");
+    let found = defects(&model);
+    assert!(found.contains(&(CityDefect::Doubled, 1, Some(16))), "{found:?}");
+    assert!(found.contains(&(CityDefect::DoubledReversed, 1, Some(18))), "{found:?}");
+}
+
+#[test]
+fn a_city_without_faces_is_refused_with_what_it_has() {
+    let refused = |text: &str| build(vec![source(CityRole::City, text)]).unwrap_err().to_string();
+    assert!(refused("v 0 0 0\nv 1 0 0\n").contains("2 vertices and no polygons"));
+    assert!(refused("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").contains("1 polygons, none of which has an area"));
+}
+
+#[test]
+fn every_warning_is_one_sentence_with_a_place() {
+    let text = format!("{BOX}f 1 2\nodd line\nf 1 1 2\no wall\nf 5 8 4 1\n");
+    let sentences: Vec<String> = model(&text).warnings.iter().map(CityWarning::to_string).collect();
+    assert_eq!(sentences[0], "1 line begins with an unknown word, passed over; first: block.obj:17");
+    assert_eq!(sentences[1], "1 face has less than 3 corners, left out; first: block.obj:16");
+    assert_eq!(sentences[2], "1 face has no area, left out; first: object box, block.obj:18");
+}
+
+#[test]
+fn the_precision_is_what_the_writer_rounded_to() {
+    let precision = |text: &str| model(text).sources[0].precision_m;
+    assert_eq!(precision(BOX), 0.01, "whole metres are the shape, not rounding");
+    assert_eq!(precision("v 0 0 0\nv 1.25 0 0\nv 1 1.5 0\nf 1 2 3\n"), 0.01);
+    assert_eq!(precision("v 5500000.123 0 0\nv 5500001.456 0 0\nv 5500000 1.5 0\nf 1 2 3\n"), 0.001);
+    assert_eq!(precision("v 0.123456789 0 0\nv 1 0.1 0\nv 0 1 0\nf 1 2 3\n"), 1e-6);
+}
+
+#[test]
+fn a_subset_is_counted_anew() {
+    let text = format!("{BOX}o wall\nv 90860 435670 0\nv 90861 435670 0\nv 90861 435670 1\nf 9 10 11\n");
+    let model = model(&text);
+    let kept = sound(model.subset(|facet| facet.0 == 1 || facet.0 == 6));
+    assert_eq!((kept.facets.len(), kept.triangles.len(), kept.vertices.len()), (2, 3, 7));
+    assert_eq!(kept.objects, ["box", "wall"]);
+    assert_eq!(kept.origin, model.origin);
+    assert_eq!(kept.sources[0].facets, 0..2);
+    assert_eq!(kept.facets[1].plane, model.facets[6].plane);
+    assert_eq!(model.subset(|facet| facet.0 == 6).objects, ["wall"]);
+    assert!(model.subset(|_| false).bounds().is_none());
+}
+
+#[test]
+fn what_is_written_as_obj_reads_back() {
+    let model =
+        model(&format!("{BOX}o wall\nv 90860.125 435670 0\nv 90861 435670 0\nv 90861 435670 1.001\nf 9 10 11\n"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("block.obj");
+    model.write_obj(&path).unwrap();
+    let again = read_city(&path, &[], &CityOptions::default()).unwrap();
+    assert_eq!((&again.objects, &again.triangles), (&model.objects, &model.triangles));
+    assert_eq!((&again.vertices, again.origin), (&model.vertices, model.origin));
+}

@@ -1,7 +1,7 @@
 //! Carries superpixels over to the points of a reconstruction.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -11,6 +11,7 @@ use super::labels::read_labels;
 use super::photos::read_photo;
 use super::slic::{SlicOptions, slic};
 use super::{ImageryError, ImageryWarning, LabelMap, SuperpixelSource};
+use crate::geometry::Camera;
 use crate::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
 
 /// One superpixel of one image with the points whose observations fall on it.
@@ -50,7 +51,7 @@ pub fn lift_superpixels(
         .found
         .par_iter()
         .map(|(index, path)| {
-            let lifted = lift_image(*index, &reconstruction.images[index.0 as usize], path, source, options);
+            let lifted = lift_image(reconstruction, *index, path, source, options);
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, files.found.len());
             lifted
         })
@@ -106,30 +107,67 @@ struct LiftedImage {
     index: ImageIndex,
     superpixels: Vec<Superpixel>,
     truncated: Option<PathBuf>,
+    /// Size of the photograph and of its camera, where they differ.
+    scaled: Option<((u32, u32), (u32, u32))>,
     observations_outside: usize,
 }
 
 fn lift_image(
+    reconstruction: &Reconstruction,
     index: ImageIndex,
-    image: &Image,
-    path: &std::path::Path,
+    path: &Path,
     source: &SuperpixelSource,
     options: &SlicOptions,
 ) -> Result<LiftedImage, ImageryError> {
-    let (map, image_size, truncated) = match source {
+    let image = &reconstruction.images[index.0 as usize];
+    let camera = reconstruction.cameras.get(image.camera.0 as usize);
+    let (map, truncated, scaled, image_size) = match source {
         SuperpixelSource::Labels(_) => {
             let map = read_labels(path)?;
-            let size = (map.width, map.height);
-            (map, size, false)
+            let image_size = size_in_camera(camera, (map.width, map.height), source.noun(), path)?;
+            // Labels of another size are the rule for segmenters, so that is nothing to warn of.
+            (map, false, None, image_size)
         }
         SuperpixelSource::Photos(_) => {
             let photo = read_photo(path)?;
-            (slic(&photo.pixels, options), photo.pixels.dimensions(), photo.truncated)
+            let found = photo.pixels.dimensions();
+            let image_size = size_in_camera(camera, found, source.noun(), path)?;
+            let scaled = (found != image_size).then_some((found, image_size));
+            (slic(&photo.pixels, options), photo.truncated, scaled, image_size)
         }
     };
     let (superpixels, observations_outside) = points_on_labels(index, image, &map, image_size);
     let truncated = truncated.then(|| path.to_path_buf());
-    Ok(LiftedImage { index, superpixels, truncated, observations_outside })
+    Ok(LiftedImage { index, superpixels, truncated, scaled, observations_outside })
+}
+
+/// Share by which the shape (width over height) of a picture may stray from its camera's: scaling rounds to whole pixels.
+const SHAPE_TOLERANCE: f64 = 0.02;
+
+/// The size of the image to which observations refer: the camera's, which must have the picture's shape. Pictures without
+/// a camera of a sensible size stand for themselves.
+fn size_in_camera(
+    camera: Option<&Camera>,
+    found: (u32, u32),
+    noun: &'static str,
+    path: &Path,
+) -> Result<(u32, u32), ImageryError> {
+    let size_of = |camera: &Camera| Some((camera.width_px.try_into().ok()?, camera.height_px.try_into().ok()?));
+    let Some(camera) = camera.and_then(size_of).filter(|&(width, height)| width > 0 && height > 0) else {
+        return Ok(found);
+    };
+    if same_shape(found, camera) {
+        return Ok(camera);
+    }
+    let turned = same_shape((found.1, found.0), camera);
+    Err(ImageryError::WrongShape { noun, found, camera, turned, path: path.to_path_buf() })
+}
+
+/// Whether one size is the other scaled, to within rounding by a pixel.
+fn same_shape(found: (u32, u32), camera: (u32, u32)) -> bool {
+    let [width, height, camera_width, camera_height] = [found.0, found.1, camera.0, camera.1].map(f64::from);
+    let stray = (width * camera_height / (height * camera_width)).ln().abs();
+    stray <= f64::max(SHAPE_TOLERANCE, 1.0 / width.min(height))
 }
 
 /// The superpixels that hold points, by label, and the number of observations outside the image.
@@ -173,6 +211,10 @@ fn gather_warnings(
     if let Some(&first) = truncated.first() {
         warnings.push(ImageryWarning::Truncated { count: truncated.len(), example: first.clone() });
     }
+    if let Some((first, (found, camera))) = lifted.iter().find_map(|image| Some((image.index, image.scaled?))) {
+        let count = lifted.iter().filter(|image| image.scaled.is_some()).count();
+        warnings.push(ImageryWarning::Scaled { count, example: name(first), found, camera });
+    }
     if let Some(first) = lifted.iter().find(|image| image.observations_outside > 0) {
         let count = lifted.iter().map(|image| image.observations_outside).sum();
         warnings.push(ImageryWarning::OutsideImage { count, example: name(first.index) });
@@ -183,14 +225,12 @@ fn gather_warnings(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Rotation3, Vector3};
-    use crate::reconstruction::Observation;
+    use crate::geometry::CameraModel;
+    use crate::reconstruction::{CameraIndex, Observation};
 
     fn image(name: &str, observations: &[(f64, f64, Option<u32>)]) -> Image {
         Image {
             name: name.to_owned(),
-            cam_from_sfm_rotation: Rotation3::identity(),
-            cam_from_sfm_translation: Vector3::zeros(),
             observations: observations
                 .iter()
                 .map(|&(x_px, y_px, point)| Observation { x_px, y_px, point: point.map(PointIndex) })
@@ -230,5 +270,55 @@ mod tests {
                 ImageryWarning::OutsideImage { count: 1, example: "sub/b.jpg".to_owned() },
             ]
         );
+    }
+
+    fn camera(width_px: u64, height_px: u64) -> Camera {
+        Camera { model: CameraModel::SimplePinhole, width_px, height_px, params: vec![1.0, 0.0, 0.0] }
+    }
+
+    #[test]
+    fn labels_of_another_size_are_scaled_to_the_camera() {
+        let folder = tempfile::tempdir().unwrap();
+        labels_2x1(folder.path(), "a.png", [7, 8]);
+        let images = vec![image("a.jpg", &[(99.9, 60.0, Some(0)), (100.0, 60.0, Some(1))])];
+        let reconstruction = Reconstruction { images, cameras: vec![camera(200, 100)], ..Reconstruction::default() };
+        let source = SuperpixelSource::Labels(folder.path().to_path_buf());
+        let lifted = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap();
+        let flat: Vec<_> = lifted.superpixels.iter().map(|s| (s.label, s.points.clone())).collect();
+        assert_eq!(flat, vec![(7, vec![PointIndex(0)]), (8, vec![PointIndex(1)])]);
+        assert_eq!(lifted.warnings, vec![]);
+    }
+
+    #[test]
+    fn photographs_of_another_size_are_scaled_with_a_warning() {
+        let folder = tempfile::tempdir().unwrap();
+        image::RgbImage::new(64, 48).save(folder.path().join("a.png")).unwrap();
+        let images = vec![image("a.jpg", &[(600.0, 400.0, Some(0))])];
+        let reconstruction = Reconstruction { images, cameras: vec![camera(640, 480)], ..Reconstruction::default() };
+        let source = SuperpixelSource::Photos(folder.path().to_path_buf());
+        let lifted = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap();
+        assert_eq!(lifted.superpixels.len(), 1);
+        let scaled =
+            ImageryWarning::Scaled { count: 1, example: "a.jpg".to_owned(), found: (64, 48), camera: (640, 480) };
+        assert_eq!(lifted.warnings, vec![scaled]);
+    }
+
+    #[test]
+    fn a_picture_that_was_turned_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        labels_2x1(folder.path(), "a.png", [7, 8]);
+        let mut turned = image("a.jpg", &[(5.0, 5.0, Some(0))]);
+        turned.camera = CameraIndex(1);
+        let cameras = vec![camera(200, 100), camera(100, 200)];
+        let reconstruction = Reconstruction { images: vec![turned], cameras, ..Reconstruction::default() };
+        let source = SuperpixelSource::Labels(folder.path().to_path_buf());
+        let error = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap_err();
+        assert!(matches!(error, ImageryError::WrongShape { turned: true, .. }), "{error}");
+    }
+
+    #[test]
+    fn shapes_agree_to_within_rounding() {
+        assert!(same_shape((31, 23), (960, 720)) && same_shape((3, 2), (960, 720)));
+        assert!(!same_shape((720, 960), (960, 720)) && !same_shape((512, 512), (960, 720)));
     }
 }

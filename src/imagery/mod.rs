@@ -74,6 +74,12 @@ pub enum ImageryError {
          save it as grey PNG without colours, palette and alpha: {path}"
     )]
     NotGrey { found: String, path: PathBuf },
+    #[error(
+        "{noun} is {} x {} pixels, expected the shape of its camera's {} x {}{}; give it as the reconstruction \
+         used it: {path}", found.0, found.1, camera.0, camera.1,
+        if *turned { " (it has been turned by 90 degrees, perhaps by its EXIF orientation)" } else { "" }
+    )]
+    WrongShape { noun: &'static str, found: (u32, u32), camera: (u32, u32), turned: bool, path: PathBuf },
 }
 
 /// Something that was tolerated: how often, and the first case.
@@ -83,6 +89,8 @@ pub enum ImageryWarning {
     Missing { noun: &'static str, count: usize, example: String },
     /// JPEG files without their end; what is missing was decoded as plain grey.
     Truncated { count: usize, example: PathBuf },
+    /// Photographs of another size than their camera's, which are taken as scaled; the first one's name and sizes.
+    Scaled { count: usize, example: String, found: (u32, u32), camera: (u32, u32) },
     /// Observations of points outside their image, which are left out; `example` is the first one's image.
     OutsideImage { count: usize, example: String },
 }
@@ -98,6 +106,12 @@ impl std::fmt::Display for ImageryWarning {
                 "{count} photographs end before their end marker and lack a part of the picture; copy them again \
                  (first: {})",
                 example.display()
+            ),
+            ImageryWarning::Scaled { count, example, found, camera } => write!(
+                f,
+                "{count} photographs have another size than their camera and are taken as scaled (first: {example}, \
+                 {} x {} for {} x {})",
+                found.0, found.1, camera.0, camera.1
             ),
             ImageryWarning::OutsideImage { count, example } => {
                 write!(f, "{count} observations lie outside their image and are left out (first: in {example})")

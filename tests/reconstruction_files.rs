@@ -2,9 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use cityweld::export::colmap::write_colmap;
 use cityweld::export::ply::write_ply;
+use cityweld::geometry::{Point3, Rotation3, Similarity, Vector3};
 use cityweld::reconstruction::{PointIndex, Reconstruction, read_reconstruction};
 
 /// The folder of the shared scenes; `None` (and a word about it) where it is not present.
@@ -88,4 +90,139 @@ fn shared_clouds_are_read_and_written_again_to_the_bit() {
         write_ply(&out, &read).unwrap();
         assert_eq!(read_reconstruction(&out).unwrap().points, read.points);
     }
+}
+
+fn data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reconstruction")
+}
+
+/// A turn, a scale and a shift to coordinates as large as a national grid's.
+fn city_from_sfm() -> Similarity {
+    Similarity {
+        scale: 0.37,
+        rotation: Rotation3::from_euler_angles(1.2, -0.3, 2.5),
+        translation: Vector3::new(448_251.25, 5_411_932.5, 112.75),
+    }
+}
+
+fn has_pycolmap() -> bool {
+    let has = Command::new("python3").args(["-c", "import pycolmap"]).output().is_ok_and(|out| out.status.success());
+    if !has {
+        println!("skipped: python3 has no pycolmap");
+    }
+    has
+}
+
+/// Shares and pixels: what rounding leaves at coordinates of 5 million beside distances of about 10.
+const MOVED_TOLERANCES: [f64; 5] = [1e-14, 1e-14, 1e-12, 1e-5, 1e-6];
+
+#[test]
+fn pycolmap_opens_moved_models_and_finds_the_same_reprojection_errors() {
+    if !has_pycolmap() {
+        return;
+    }
+    let shared: Vec<_> = shared_models()
+        .into_iter()
+        .filter(|p| {
+            ["rotterdam_oblique/sfm", "delft_street/sfm", "lund-one/part_b"].iter().any(|name| p.ends_with(name))
+        })
+        .collect();
+    let city_from_sfm = city_from_sfm();
+    for folder in [data().join("rig_bin"), data().join("rig_txt")].into_iter().chain(shared) {
+        let out = tempfile::tempdir().unwrap();
+        let moved = read_reconstruction(&folder).unwrap().transformed(&city_from_sfm);
+        write_colmap(out.path(), &moved).unwrap();
+        let Similarity { scale, rotation, translation } = city_from_sfm;
+        let by_rows = rotation.matrix().transpose();
+        let numbers = [scale].into_iter().chain(by_rows.iter().copied()).chain(translation.iter().copied());
+        let output = Command::new("python3")
+            .arg(data().join("compare_moved.py"))
+            .args([&folder, out.path()])
+            .args(numbers.map(|v| v.to_string()))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let printed = String::from_utf8(output.stdout).unwrap();
+        println!("{}: {printed}", folder.display());
+        let differences: Vec<f64> = printed.split_whitespace().map(|v| v.parse().unwrap()).collect();
+        assert_eq!(differences.len(), MOVED_TOLERANCES.len());
+        for (difference, tolerance) in differences.iter().zip(MOVED_TOLERANCES) {
+            assert!(*difference <= tolerance, "{}: {printed}", folder.display());
+        }
+    }
+}
+
+#[test]
+fn a_moved_rig_keeps_its_frames_and_its_images_together() {
+    for name in ["rig_bin", "rig_txt"] {
+        let read = read_reconstruction(&data().join(name)).unwrap();
+        assert!(read.warnings.is_empty());
+        let moved = read.transformed(&city_from_sfm());
+        let out = tempfile::tempdir().unwrap();
+        write_colmap(out.path(), &moved).unwrap();
+        // Reading tells of images whose poses differ from those by their rig and frame.
+        let again = read_reconstruction(out.path()).unwrap();
+        assert!(again.warnings.is_empty(), "{:?}", again.warnings);
+        assert_same(&moved, &again);
+        let rigs = again.colmap.unwrap().rigs.unwrap();
+        let (before, after) =
+            (read.colmap.unwrap().rigs.unwrap()[0].others[0].1.unwrap(), rigs[0].others[0].1.unwrap());
+        assert_eq!(before.quaternion_wxyz, after.quaternion_wxyz);
+        assert_eq!(before.translation.map(|v| 0.37 * v), after.translation);
+    }
+}
+
+#[test]
+fn the_made_up_rig_is_seen_where_its_cameras_project_it() {
+    let read = read_reconstruction(&data().join("rig_bin")).unwrap();
+    let moved = read.transformed(&city_from_sfm());
+    for (r, tolerance_px) in [(&read, 1e-6), (&moved, 1e-4)] {
+        for image in &r.images {
+            let camera = &r.cameras[image.camera.0 as usize];
+            for o in &image.observations {
+                let Some(point) = o.point else { continue };
+                let [x, y] = camera.project(&image.cam_from_sfm(&r.points[point.0 as usize])).unwrap();
+                assert!((x - o.x_px).hypot(y - o.y_px) < tolerance_px, "{x} {y} {o:?}");
+            }
+        }
+    }
+    let center = moved.images[0].center();
+    assert!((city_from_sfm().apply(&read.images[0].center()) - center).norm() < 1e-8);
+    assert!(moved.images[0].cam_from_sfm(&center).coords.norm() < 1e-8);
+}
+
+#[test]
+fn moving_there_and_back_gives_the_same_points() {
+    let read = read_reconstruction(&data().join("rig_bin")).unwrap();
+    let back = read.transformed(&city_from_sfm()).transformed(&city_from_sfm().inverse());
+    let apart = |(a, b): (&Point3<f64>, &Point3<f64>)| (a - b).norm();
+    assert!(read.points.iter().zip(&back.points).map(apart).fold(0.0, f64::max) < 1e-8);
+}
+
+#[test]
+fn a_cloud_keeps_its_normals_and_colours_when_written() {
+    let mut cloud = read_reconstruction(&data().join("ply/sound_little.ply")).unwrap();
+    cloud.normals = vec![Vector3::x(), Vector3::y(), Vector3::new(0.6, 0.0, 0.8)];
+    let moved = cloud.transformed(&city_from_sfm());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.ply");
+    write_ply(&path, &moved).unwrap();
+    let again = read_reconstruction(&path).unwrap();
+    assert_eq!((&again.points, &again.colors), (&moved.points, &moved.colors));
+    assert!(again.normals.iter().zip(&moved.normals).all(|(a, b)| (a - b).norm() < 1e-15));
+    assert!((moved.normals[0] - city_from_sfm().rotation * Vector3::x()).norm() < 1e-15);
+}
+
+#[test]
+fn what_cannot_be_written_is_told_with_its_path() {
+    let read = read_reconstruction(&data().join("rig_bin")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let blocked = folder.path().join("file");
+    fs::write(&blocked, "in the way").unwrap();
+    let message = write_colmap(&blocked.join("sfm"), &read).unwrap_err().to_string();
+    assert!(message.contains("file/sfm"), "{message}");
+    assert!(write_ply(&blocked.join("points.ply"), &read).unwrap_err().to_string().contains("points.ply"));
+    let mut lacking = read;
+    lacking.point_ids.clear();
+    assert!(write_colmap(folder.path(), &lacking).unwrap_err().to_string().contains("an id for every point"));
 }

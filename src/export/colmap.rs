@@ -1,13 +1,14 @@
 //! A reconstruction as a COLMAP model.
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 
 use super::ExportError;
 use super::file::write_file;
 use crate::format::colmap::{
-    CAMERA_MODELS, CameraRecord, Encoding, ImageHead, NO_POINT, ObservationRecord, PointHead, write_cameras,
-    write_frames, write_images, write_points, write_rigs,
+    CAMERA_MODELS, CameraRecord, Encoding, ImageHead, NO_POINT, ObservationRecord, PointHead, cameras_file,
+    frames_file, rigs_file, write_images, write_points,
 };
 use crate::reconstruction::{ColmapParts, PointIndex, Reconstruction};
 
@@ -20,44 +21,46 @@ pub fn write_colmap(folder: &Path, r: &Reconstruction) -> Result<(), ExportError
     let parts = r.colmap.as_ref().unwrap_or(&plain);
     let encoding = parts.encoding;
     let path = |stem: &str| folder.join(format!("{stem}.{}", encoding.extension()));
-    write_file(&path("cameras"), |out| write_cameras(out, encoding, &camera_records(r)))?;
+    write_file(&path("cameras"), |out| out.write_all(&cameras_file(encoding, &camera_records(r))))?;
     if let Some(rigs) = &parts.rigs {
-        write_file(&path("rigs"), |out| write_rigs(out, encoding, rigs))?;
+        write_file(&path("rigs"), |out| out.write_all(&rigs_file(encoding, rigs)))?;
     }
     if let Some(frames) = &parts.frames {
-        write_file(&path("frames"), |out| write_frames(out, encoding, frames))?;
+        write_file(&path("frames"), |out| out.write_all(&frames_file(encoding, frames)))?;
     }
-    write_file(&path("images"), |out| {
-        let point_id = |point: PointIndex| r.point_ids[point.0 as usize];
-        let images = r.images.iter().map(|image| {
-            let head = ImageHead {
-                id: image.id,
-                cam_from_world: image.pose(),
-                camera_id: r.camera_ids[image.camera.0 as usize],
-                name: image.name.as_bytes(),
-            };
-            let observations = image.observations.iter().map(move |o| ObservationRecord {
-                x: o.x_px,
-                y: o.y_px,
-                point_id: o.point.map_or(NO_POINT, point_id),
-            });
-            (head, observations)
-        });
-        write_images(out, encoding, images)
-    })?;
-    write_file(&path("points3D"), |out| {
-        let points = (0..r.points.len()).map(|i| {
-            let head = PointHead {
-                id: r.point_ids[i],
-                position: r.points[i].into(),
-                color: r.colors.get(i).copied().unwrap_or_default(),
-                error: r.point_errors_px.get(i).copied().unwrap_or(UNKNOWN_ERROR),
-            };
-            let track = r.track(PointIndex(i as u32)).iter();
-            (head, track.map(|(image, keypoint)| (r.images[image.0 as usize].id, *keypoint)))
-        });
-        write_points(out, encoding, points)
-    })
+    write_file(&path("images"), |out| write_images(out, encoding, r.images.len(), |i| image_record(r, i)))?;
+    write_file(&path("points3D"), |out| write_points(out, encoding, r.points.len(), |i| point_record(r, i)))
+}
+
+fn image_record(
+    r: &Reconstruction,
+    number: usize,
+) -> (ImageHead<'_>, impl ExactSizeIterator<Item = ObservationRecord>) {
+    let image = &r.images[number];
+    let head = ImageHead {
+        id: image.id,
+        cam_from_world: image.pose(),
+        camera_id: r.camera_ids[image.camera.0 as usize],
+        name: image.name.as_bytes(),
+    };
+    let point_id = |point: PointIndex| r.point_ids[point.0 as usize];
+    let observations = image.observations.iter().map(move |o| ObservationRecord {
+        x: o.x_px,
+        y: o.y_px,
+        point_id: o.point.map_or(NO_POINT, point_id),
+    });
+    (head, observations)
+}
+
+fn point_record(r: &Reconstruction, number: usize) -> (PointHead, impl ExactSizeIterator<Item = (u32, u32)>) {
+    let head = PointHead {
+        id: r.point_ids[number],
+        position: r.points[number].into(),
+        color: r.colors.get(number).copied().unwrap_or_default(),
+        error: r.point_errors_px.get(number).copied().unwrap_or(UNKNOWN_ERROR),
+    };
+    let track = r.track(PointIndex(number as u32)).iter();
+    (head, track.map(|(image, keypoint)| (r.images[image.0 as usize].id, *keypoint)))
 }
 
 /// What COLMAP writes where it has not computed a reprojection error.

@@ -3,6 +3,7 @@
 //! `ply-rs-bw` reads headers and binary rows. ASCII rows are read here, as it refuses `nan` and blank lines.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -172,11 +173,9 @@ impl PlyFile<'_> {
     fn read(&self) -> Result<PlyCloud, PlyError> {
         let (header_text, header_lines, payload_at) = self.cleaned_header()?;
         let mut reader = Reader::new(header_text.as_bytes());
-        let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(|error| PlyError::Header {
-            path: self.path.into(),
-            line: error.line().unwrap_or(header_lines),
-            problem: error.to_string().replace("\n\t", ", ").replace('\n', ""),
-        })?;
+        let header = Parser::<Skipped>::new()
+            .read_header(&mut reader)
+            .map_err(|error| self.header_line_fault(error.line(), header_lines))?;
         let vertex = self.vertex_element(&header, header_lines)?;
         match header.encoding {
             Encoding::Ascii => self.ascii(&header, header_lines, payload_at),
@@ -186,6 +185,15 @@ impl PlyFile<'_> {
 
     fn header_fault(&self, line: usize, problem: impl Into<String>) -> PlyError {
         PlyError::Header { path: self.path.into(), line, problem: problem.into() }
+    }
+
+    /// The parser tells the line; its own words are about its grammar.
+    fn header_line_fault(&self, line: Option<usize>, header_lines: usize) -> PlyError {
+        let number = line.unwrap_or(header_lines);
+        let line = self.bytes.split(|b| *b == b'\n').nth(number - 1).unwrap_or_default().trim_ascii();
+        let expected = "expected `format ascii|binary_little_endian|binary_big_endian 1.0`, `element NAME COUNT`, \
+                        `property TYPE NAME` or `property list TYPE TYPE NAME`";
+        self.header_fault(number, format!("{expected}, got `{}`", shown(line)))
     }
 
     /// The header with comments emptied and names made of letters and digits (cloud tools write `scalar_d_(m)`), so
@@ -201,7 +209,7 @@ impl PlyFile<'_> {
             let line = String::from_utf8_lossy(line.trim_ascii());
             let mut words: Vec<&str> = line.split_ascii_whitespace().collect();
             let name = match words.first().copied() {
-                Some("comment" | "obj_info") => {
+                Some("comment" | "obj_info") | None => {
                     cleaned.push_str("comment\n");
                     continue;
                 }
@@ -273,7 +281,10 @@ impl PlyFile<'_> {
                 byte: at,
                 element: element.name.clone(),
                 expected: format!("{} rows", element.count),
-                got: error.to_string().replace("\n\t", ", ").replace('\n', ""),
+                got: match error.kind() {
+                    ErrorKind::UnexpectedEof => "the end of the file before".into(),
+                    _ => error.to_string().replace("\n\t", ", ").replace('\n', " "),
+                },
             };
             if element.name != "vertex" {
                 Parser::<Skipped>::new().read_payload_for_element(&mut reader, element, header).map_err(damaged)?;
@@ -355,7 +366,7 @@ impl PlyFile<'_> {
             // `vertex_element` has made sure that there is one.
             None => Ok(cloud.unwrap_or_default()),
             Some((line, row)) => {
-                let got = format!("`{}`", String::from_utf8_lossy(&row[..row.len().min(40)]));
+                let got = format!("`{}`", shown(row));
                 let expected = "the end of the file after the last row that the header counts".into();
                 Err(PlyError::Row { path: self.path.into(), line, expected, got })
             }
@@ -366,7 +377,7 @@ impl PlyFile<'_> {
         let fault = |expected: String, got: &[u8]| {
             let got = match got {
                 [] => "the end of the line".to_string(),
-                token => format!("`{}`", String::from_utf8_lossy(&token[..token.len().min(40)])),
+                token => format!("`{}`", shown(token)),
             };
             PlyError::Row { path: self.path.into(), line, expected, got }
         };
@@ -393,6 +404,13 @@ impl PlyFile<'_> {
             rest => Err(fault(format!("{} values in a row of {}", element.properties.len(), element.name), rest)),
         }
     }
+}
+
+/// Characters of a file that a message repeats at most.
+const SHOWN_BYTES: usize = 40;
+
+fn shown(text: &[u8]) -> String {
+    String::from_utf8_lossy(&text[..text.len().min(SHOWN_BYTES)]).escape_debug().to_string()
 }
 
 /// A header longer than this is none; it keeps a large file of another kind from being searched to its end.

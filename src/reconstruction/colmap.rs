@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::frames::FramePoses;
 use super::ids::{IdFault, IdIndex};
+use super::tracks::{Links, tracks};
 use super::transform::rotation_of;
 use super::*;
 use crate::format::colmap::{CameraRecord, ImageRecord, Model, NO_POINT, ObservationRecord, PointRecords, PoseRecord};
@@ -13,9 +14,6 @@ use crate::geometry::CameraModel;
 
 /// How far a quaternion's length may be from one without a word: text of few digits.
 const QUATERNION_TOLERANCE: f64 = 1e-3;
-
-/// Track elements checked at once; any number gives the same result.
-const ELEMENTS_AT_ONCE: usize = 1 << 16;
 
 /// Gathers faults and warnings of one model.
 pub(super) struct Checker {
@@ -41,7 +39,7 @@ impl Checker {
         }
     }
 
-    fn warn(&mut self, kind: WarningKind, count: usize, example: impl FnOnce() -> String) {
+    pub(super) fn warn(&mut self, kind: WarningKind, count: usize, example: impl FnOnce() -> String) {
         if count == 0 {
             return;
         }
@@ -92,8 +90,8 @@ pub(super) fn reconstruction(folder: &Path, model: Model) -> Result<Reconstructi
     let point_index = check.index("points3D", "point", model.points.ids.iter().copied())?;
     let camera_ids = model.cameras.iter().map(|c| c.id).collect();
     let cameras = model.cameras.into_iter().map(|record| camera(&check, record)).collect::<Result<_, _>>()?;
-    let images = images(&mut check, model.images, &camera_index, &point_index, &frame_poses)?;
-    let track_elements = tracks(&mut check, &model.points, &image_index, &images)?;
+    let (images, links) = images(&mut check, model.images, &camera_index, &point_index, &frame_poses)?;
+    let track_elements = tracks(&mut check, &model.points, &image_index, &images, links)?;
     check_points(&mut check, &model.points)?;
     let PointRecords { ids, positions, colors, errors, track_starts, .. } = model.points;
     Ok(Reconstruction {
@@ -136,45 +134,59 @@ fn images(
     cameras: &IdIndex,
     points: &IdIndex,
     frame_poses: &FramePoses,
-) -> Result<Vec<Image>, ReconstructionError> {
+) -> Result<(Vec<Image>, Links), ReconstructionError> {
     let read: Vec<_> = records
         .into_par_iter()
-        .map(|mut record| {
-            let observations = observations(std::mem::take(&mut record.observations), points);
+        .enumerate()
+        .map(|(image, mut record)| {
+            let image = ImageIndex(image as u32);
+            let observations = observations(image, std::mem::take(&mut record.observations), points);
             (record, observations)
         })
         .collect();
     let mut images = Vec::with_capacity(read.len());
-    for (record, observations) in read {
+    let mut links = Links::default();
+    for (record, observed) in read {
         let mut image = image(check, record, cameras, frame_poses)?;
-        let (observations, missing) = observations.map_err(|keypoint| {
+        let observed = observed.map_err(|keypoint| {
             let object = format!("keypoint {keypoint} of image {}", image.id);
             check.fault("images", object, "a finite position", "a number that is not finite")
         })?;
-        check.warn(WarningKind::ObservationsOfMissingPoints, missing, || format!("in image {}", image.id));
-        check.warn(WarningKind::ImagesWithoutObservations, usize::from(observations.is_empty()), || {
-            format!("image {}", image.id)
-        });
-        image.observations = observations;
+        check.warn(WarningKind::ObservationsOfMissingPoints, observed.missing, || format!("in image {}", image.id));
+        let is_empty = observed.observations.is_empty();
+        check.warn(WarningKind::ImagesWithoutObservations, is_empty.into(), || format!("image {}", image.id));
+        image.observations = observed.observations;
+        links.join(observed.links);
         images.push(image);
     }
-    Ok(images)
+    Ok((images, links))
 }
 
-/// The observations with indices for ids, and how many name a point that is not there; or the number of the first
-/// that is not finite.
-fn observations(records: Vec<ObservationRecord>, points: &IdIndex) -> Result<(Vec<Observation>, usize), usize> {
+/// What an image observed.
+struct Observed {
+    observations: Vec<Observation>,
+    links: Links,
+    /// Observations that name a point that is not there.
+    missing: usize,
+}
+
+/// Indices for ids; or the number of the first keypoint that is not finite.
+fn observations(image: ImageIndex, records: Vec<ObservationRecord>, points: &IdIndex) -> Result<Observed, usize> {
     if let Some(keypoint) = records.iter().position(|o| !(o.x.is_finite() && o.y.is_finite())) {
         return Err(keypoint);
     }
     let mut missing = 0;
+    let mut links = Links::default();
     // Both types have the same size, so that collecting takes no further memory.
-    let observations = records.into_iter().map(|ObservationRecord { x, y, point_id }| {
+    let observations = records.into_iter().zip(0..).map(|(ObservationRecord { x, y, point_id }, keypoint)| {
         let point = if point_id == NO_POINT { None } else { points.get(point_id).map(PointIndex) };
-        missing += usize::from(point.is_none() && point_id != NO_POINT);
+        match point {
+            Some(point) => links.add(image, keypoint, point),
+            None => missing += usize::from(point_id != NO_POINT),
+        }
         Observation { x_px: x, y_px: y, point }
     });
-    Ok((observations.collect(), missing))
+    Ok(Observed { observations: observations.collect(), links, missing })
 }
 
 /// An image without its observations.
@@ -221,64 +233,4 @@ fn check_points(check: &mut Checker, points: &PointRecords) -> Result<(), Recons
         check.warn(WarningKind::PointsWithoutTrack, count, || format!("point {}", points.ids[first]));
     }
     Ok(())
-}
-
-/// What a piece of the track elements became: the elements, and how many the images contradict with the first one; or
-/// the first that names what is not there.
-type CheckedElements = Result<(Vec<(ImageIndex, u32)>, usize, Option<usize>), usize>;
-
-fn tracks(
-    check: &mut Checker,
-    points: &PointRecords,
-    image_index: &IdIndex,
-    images: &[Image],
-) -> Result<Vec<(ImageIndex, u32)>, ReconstructionError> {
-    let pieces: Vec<_> = points
-        .track_elements
-        .par_chunks(ELEMENTS_AT_ONCE)
-        .enumerate()
-        .map(|(piece, _)| checked_elements(piece * ELEMENTS_AT_ONCE, points, image_index, images))
-        .collect();
-    let mut elements = Vec::with_capacity(points.track_elements.len());
-    let point_of = |element: usize| points.track_starts.partition_point(|start| *start as usize <= element) - 1;
-    for piece in pieces {
-        let (piece, contradicted, first) = piece.map_err(|element| {
-            let (image_id, keypoint) = points.track_elements[element];
-            let object = format!("track of point {}", points.ids[point_of(element)]);
-            match image_index.get(image_id.into()) {
-                None => check.fault("points3D", object, "images of the model", format!("image {image_id}")),
-                Some(image) => {
-                    let count = images[image as usize].observations.len();
-                    let expected = format!("one of the {count} keypoints of image {image_id}");
-                    check.fault("points3D", object, &expected, format!("keypoint {keypoint}"))
-                }
-            }
-        })?;
-        elements.extend(piece);
-        check.warn(WarningKind::TracksThatImagesContradict, contradicted, || {
-            first.map(|element| format!("in the track of point {}", points.ids[point_of(element)])).unwrap_or_default()
-        });
-    }
-    Ok(elements)
-}
-
-fn checked_elements(start: usize, points: &PointRecords, image_index: &IdIndex, images: &[Image]) -> CheckedElements {
-    let end = (start + ELEMENTS_AT_ONCE).min(points.track_elements.len());
-    let mut point = points.track_starts.partition_point(|first| *first as usize <= start) - 1;
-    let mut elements = Vec::with_capacity(end - start);
-    let (mut contradicted, mut first) = (0, None);
-    for element in start..end {
-        while points.track_starts[point + 1] as usize <= element {
-            point += 1;
-        }
-        let (image_id, keypoint) = points.track_elements[element];
-        let image = image_index.get(image_id.into()).ok_or(element)?;
-        let observation = images[image as usize].observations.get(keypoint as usize).ok_or(element)?;
-        if observation.point != Some(PointIndex(point as u32)) {
-            contradicted += 1;
-            first.get_or_insert(element);
-        }
-        elements.push((ImageIndex(image), keypoint));
-    }
-    Ok((elements, contradicted, first))
 }

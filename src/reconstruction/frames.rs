@@ -47,7 +47,7 @@ impl<'a> FramePoses<'a> {
             data.extend(images.map(|(place, _)| (number, place)));
         }
         let image_ids: Vec<u64> = data.iter().map(|(number, place)| frames[*number].data[*place].1).collect();
-        let frame_of_image = check.index("frames", "image in frames,", image_ids.into_iter())?;
+        let frame_of_image = check.index("frames", "data id", image_ids.into_iter())?;
         Ok(FramePoses { rigs, frames, rig_index, frame_of_image, data })
     }
 

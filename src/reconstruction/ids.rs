@@ -52,3 +52,33 @@ impl IdIndex {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_records_by_near_and_by_far_ids() {
+        for ids in [vec![3, 1, 2], vec![u64::MAX - 1, 0, 7], vec![]] {
+            let index = IdIndex::new(ids.iter().copied()).ok().unwrap();
+            for (record, id) in ids.iter().enumerate() {
+                assert_eq!(index.get(*id), Some(record as u32));
+            }
+            assert_eq!((index.get(5), index.get(u64::MAX)), (None, None));
+        }
+    }
+
+    #[test]
+    fn an_id_far_away_takes_no_table_of_that_length() {
+        let index = IdIndex::new([1, 1 << 40].into_iter()).ok().unwrap();
+        assert!(matches!(index, IdIndex::Map(_)));
+    }
+
+    #[test]
+    fn names_an_id_that_is_there_twice() {
+        for twice in [4, 1 << 40] {
+            let fault = IdIndex::new([twice, 1, twice].into_iter()).err();
+            assert!(matches!(fault, Some(IdFault::Twice(id)) if id == twice));
+        }
+    }
+}

@@ -5,6 +5,7 @@ mod frames;
 mod ids;
 mod ply;
 mod read;
+mod tracks;
 mod transform;
 
 pub use read::{ReconstructionError, read_reconstruction};
@@ -97,7 +98,7 @@ pub struct ReconstructionWarning {
 pub enum WarningKind {
     /// Keypoints name points that are not in the model; they count as keypoints without a point.
     ObservationsOfMissingPoints,
-    /// A track lists a keypoint that belongs to another point or to none.
+    /// A track lists a keypoint that belongs to another point or to none, or lacks one.
     TracksThatImagesContradict,
     /// Points that no track supports.
     PointsWithoutTrack,
@@ -121,7 +122,9 @@ impl std::fmt::Display for ReconstructionWarning {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let what = match self.kind {
             WarningKind::ObservationsOfMissingPoints => "keypoints of points that the model does not hold, ignored",
-            WarningKind::TracksThatImagesContradict => "track elements that their images contradict",
+            WarningKind::TracksThatImagesContradict => {
+                "links between keypoints and points that only images or only tracks tell"
+            }
             WarningKind::PointsWithoutTrack => "points without a track",
             WarningKind::ImagesWithoutObservations => "images without keypoints",
             WarningKind::PosesThatFramesContradict => "image poses that differ from their frames', the frames' taken",

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::{Reconstruction, ReconstructionWarning, WarningKind, colmap, ply};
-use crate::format::colmap::{ColmapError, is_model_folder, read_model};
+use crate::format::colmap::{ColmapError, missing_files, read_model};
 use crate::format::ply::{PlyError, is_ply, read_ply};
 
 /// Why a reconstruction could not be read.
@@ -17,7 +17,7 @@ pub enum ReconstructionError {
         "{path}: expected a folder with cameras, images and points3D (.bin or .txt; also in its sparse/0, sparse or 0), \
          or a PLY file, got {got}"
     )]
-    NotAReconstruction { path: PathBuf, got: &'static str },
+    NotAReconstruction { path: PathBuf, got: String },
     #[error(transparent)]
     Colmap(#[from] ColmapError),
     #[error(transparent)]
@@ -38,10 +38,17 @@ pub fn read_reconstruction(path: &Path) -> Result<Reconstruction, Reconstruction
         return read_file(path);
     }
     let folders = MODEL_SUBFOLDERS.iter().map(|sub| if sub.is_empty() { path.into() } else { path.join(sub) });
-    match folders.into_iter().find(|folder: &PathBuf| is_model_folder(folder)) {
+    match folders.into_iter().find(|folder: &PathBuf| is_model(folder)) {
         Some(folder) => read_colmap(&folder),
-        None => Err(ReconstructionError::NotAReconstruction { path: path.into(), got: "a folder without them" }),
+        None => {
+            let got = format!("a folder without {}", missing_files(path).join(" and "));
+            Err(ReconstructionError::NotAReconstruction { path: path.into(), got })
+        }
     }
+}
+
+fn is_model(folder: &Path) -> bool {
+    missing_files(folder).is_empty()
 }
 
 fn read_file(path: &Path) -> Result<Reconstruction, ReconstructionError> {
@@ -56,8 +63,8 @@ fn read_file(path: &Path) -> Result<Reconstruction, ReconstructionError> {
         ["cameras", "images", "points3D", "rigs", "frames"].iter().any(|known| stem.to_str() == Some(known))
     });
     match path.parent() {
-        Some(folder) if is_model_file && is_model_folder(folder) => read_colmap(folder),
-        _ => Err(ReconstructionError::NotAReconstruction { path: path.into(), got: "another kind of file" }),
+        Some(folder) if is_model_file && is_model(folder) => read_colmap(folder),
+        _ => Err(ReconstructionError::NotAReconstruction { path: path.into(), got: "another kind of file".into() }),
     }
 }
 
@@ -71,7 +78,7 @@ fn read_colmap(folder: &Path) -> Result<Reconstruction, ReconstructionError> {
 fn further_models(folder: &Path) -> Option<ReconstructionWarning> {
     let number: u32 = folder.file_name()?.to_str()?.parse().ok()?;
     let beside = |n: u32| folder.with_file_name(n.to_string());
-    let mut further = (0..).take_while(|n| *n == number || is_model_folder(&beside(*n))).filter(|n| *n != number);
+    let mut further = (0..).take_while(|n| *n == number || is_model(&beside(*n))).filter(|n| *n != number);
     let first = further.next()?;
     let example = beside(first).display().to_string();
     Some(ReconstructionWarning { kind: WarningKind::FurtherModels, count: 1 + further.count(), example })

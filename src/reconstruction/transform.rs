@@ -79,3 +79,47 @@ fn scale_rig(rig: &mut RigRecord, scale: f64) {
         pose.translation = pose.translation.map(|v| scale * v);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+
+    fn image(quaternion_wxyz: [f64; 4]) -> Image {
+        let mut image = Image::default();
+        image.set_pose(&PoseRecord { quaternion_wxyz, translation: [1.0, -2.0, 0.5] });
+        image
+    }
+
+    #[test]
+    fn the_quaternion_that_was_read_is_kept_until_the_rotation_changes() {
+        let mut image = image([-0.6, 0.0, 0.80001, 0.0]);
+        assert_eq!(image.pose().quaternion_wxyz, [-0.6, 0.0, 0.80001, 0.0]);
+        image.cam_from_sfm_rotation = Rotation3::from_euler_angles(0.0, 0.0, 0.5);
+        let [w, x, y, z] = image.pose().quaternion_wxyz;
+        assert!((w - 0.25f64.cos()).abs() < 1e-15 && x == 0.0 && y == 0.0 && (z - 0.25f64.sin()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_moved_camera_sees_the_moved_points_larger_by_the_scale() {
+        let city_from_sfm = Similarity {
+            scale: 2.5,
+            rotation: Rotation3::from_euler_angles(0.3, -0.4, 1.9),
+            translation: Vector3::new(5.0, -7.0, 0.5),
+        };
+        let point = Point3::new(0.3, 0.7, 9.0);
+        let before =
+            Reconstruction { points: vec![point], images: vec![image([0.6, 0.0, 0.8, 0.0])], ..Default::default() };
+        let after = before.transformed(&city_from_sfm);
+        let x_in_cam = before.images[0].cam_from_sfm(&point);
+        assert!((after.images[0].cam_from_sfm(&after.points[0]) - x_in_cam * 2.5).norm() < 1e-14);
+    }
+
+    #[test]
+    fn quaternions_without_direction_have_no_rotation() {
+        assert_eq!(rotation_of(&[0.0; 4]), None);
+        assert_eq!(rotation_of(&[f64::NAN, 0.0, 0.0, 1.0]), None);
+        assert_eq!(rotation_of(&[f64::INFINITY, 0.0, 0.0, 1.0]), None);
+        assert_eq!(rotation_of(&[-2.0, 0.0, 0.0, 0.0]), Some(Rotation3::identity()));
+    }
+}

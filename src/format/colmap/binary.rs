@@ -1,6 +1,6 @@
 //! Binary record files: little-endian, packed, each led by a count of 8 bytes.
 
-use rayon::prelude::*;
+use std::io::{BufRead, ErrorKind, Read};
 
 use super::Fault;
 use super::records::*;
@@ -17,62 +17,82 @@ const OBSERVATION_BYTES: usize = 3 * 8;
 const POINT_BYTES: usize = 8 + 3 * 8 + 3 + 8 + 8;
 const TRACK_ELEMENT_BYTES: usize = 4 + 4;
 
-/// Position in a file's bytes.
-struct Cursor<'a> {
-    bytes: &'a [u8],
-    at: usize,
+/// Longest name of an image; more is no name but a file without the zero byte that ends it.
+const MAX_NAME_BYTES: u64 = 1 << 16;
+
+/// Reads on in a file and knows how much is left of it. Files are not read whole first: the bytes of a record go
+/// through the same small buffers, which spares the machine half of the memory and most of the time to fetch it.
+pub(super) struct Cursor<R> {
+    reader: R,
+    at: u64,
+    length: u64,
+    /// The bytes of one image's observations or one point's track.
+    scratch: Vec<u8>,
 }
 
-impl<'a> Cursor<'a> {
-    fn new(bytes: &'a [u8]) -> Cursor<'a> {
-        Cursor { bytes, at: 0 }
+impl<R: BufRead> Cursor<R> {
+    /// `length` is the size of the file.
+    pub(super) fn new(reader: R, length: u64) -> Cursor<R> {
+        Cursor { reader, at: 0, length, scratch: Vec::new() }
     }
 
-    fn left(&self) -> usize {
-        self.bytes.len() - self.at
+    fn left(&self) -> u64 {
+        self.length.saturating_sub(self.at)
     }
 
-    fn take<const N: usize>(&mut self, object: impl Fn() -> String) -> Result<&'a [u8; N], Fault> {
-        match self.bytes[self.at..].first_chunk::<N>() {
-            Some(chunk) => {
-                self.at += N;
-                Ok(chunk)
+    fn take<const N: usize>(&mut self, object: impl Fn() -> String) -> Result<[u8; N], Fault> {
+        let mut raw = [0; N];
+        match self.reader.read_exact(&mut raw) {
+            Ok(()) => {
+                self.at += N as u64;
+                Ok(raw)
             }
-            None => Err(Fault::new(
-                self.at,
-                object(),
-                format!("{N} more bytes"),
-                format!("the end of the file after {}", self.left()),
-            )),
+            Err(error) => Err(self.cut_short(error, N, object())),
         }
     }
 
+    /// The next `count * N` bytes, of which `counted` has said that they are there.
+    fn take_many<const N: usize>(&mut self, count: usize, object: impl Fn() -> String) -> Result<&[[u8; N]], Fault> {
+        self.scratch.resize(count * N, 0);
+        match self.reader.read_exact(&mut self.scratch) {
+            Ok(()) => {
+                self.at += self.scratch.len() as u64;
+                Ok(self.scratch.as_chunks().0)
+            }
+            Err(error) => Err(self.cut_short(error, count * N, object())),
+        }
+    }
+
+    fn cut_short(&self, error: std::io::Error, wanted: usize, object: String) -> Fault {
+        if error.kind() != ErrorKind::UnexpectedEof {
+            return Fault::Unreadable(error);
+        }
+        let got = format!("the end of the file after {}", self.left());
+        Fault::malformed(self.at, object, format!("{wanted} more bytes"), got)
+    }
+
     fn u32(&mut self, object: impl Fn() -> String) -> Result<u32, Fault> {
-        Ok(u32::from_le_bytes(*self.take(object)?))
+        Ok(u32::from_le_bytes(self.take(object)?))
     }
 
     fn i32(&mut self, object: impl Fn() -> String) -> Result<i32, Fault> {
-        Ok(i32::from_le_bytes(*self.take(object)?))
+        Ok(i32::from_le_bytes(self.take(object)?))
     }
 
     fn u64(&mut self, object: impl Fn() -> String) -> Result<u64, Fault> {
-        Ok(u64::from_le_bytes(*self.take(object)?))
+        Ok(u64::from_le_bytes(self.take(object)?))
     }
 
     fn pose(&mut self, object: impl Fn() -> String) -> Result<PoseRecord, Fault> {
-        Ok(pose_at(self.take(object)?))
+        Ok(pose_at(&self.take(object)?))
     }
 
     /// Checks that `count` records of at least `record_bytes` can follow, before memory is taken for them.
     fn counted(&self, count: u64, record_bytes: usize, of: &str, object: impl Fn() -> String) -> Result<usize, Fault> {
-        let room = self.left() / record_bytes;
-        usize::try_from(count).ok().filter(|count| *count <= room).ok_or_else(|| {
-            Fault::new(
-                self.at,
-                object(),
-                format!("at most {room} {of} in the {} bytes that are left", self.left()),
-                format!("a count of {count}"),
-            )
+        let room = self.left() / record_bytes as u64;
+        usize::try_from(count).ok().filter(|_| count <= room).ok_or_else(|| {
+            let expected = format!("at most {room} {of} in the {} bytes that are left", self.left());
+            Fault::malformed(self.at, object(), expected, format!("a count of {count}"))
         })
     }
 
@@ -86,7 +106,7 @@ impl<'a> Cursor<'a> {
             return Ok(());
         }
         let got = format!("{} bytes more", self.left());
-        Err(Fault::new(self.at, format!("after {count} {of}"), "the end of the file", got))
+        Err(Fault::malformed(self.at, format!("after {count} {of}"), "the end of the file", got))
     }
 }
 
@@ -107,8 +127,7 @@ fn pose_at(raw: &[u8; POSE_BYTES]) -> PoseRecord {
     }
 }
 
-pub(super) fn cameras(bytes: &[u8]) -> Result<Vec<CameraRecord>, Fault> {
-    let mut cursor = Cursor::new(bytes);
+pub(super) fn cameras<R: BufRead>(mut cursor: Cursor<R>) -> Result<Vec<CameraRecord>, Fault> {
     let count = cursor.count(CAMERA_BYTES, "cameras")?;
     let mut cameras = Vec::with_capacity(count);
     for number in 0..count {
@@ -118,12 +137,12 @@ pub(super) fn cameras(bytes: &[u8]) -> Result<Vec<CameraRecord>, Fault> {
         let model_id = cursor.i32(object)?;
         let model = CAMERA_MODELS.iter().find(|m| m.id == model_id).ok_or_else(|| {
             let known = format!("a camera model id from 0 to {}", CAMERA_MODELS.len() - 1);
-            Fault::new(at, format!("camera {id}"), known, model_id.to_string())
+            Fault::malformed(at, format!("camera {id}"), known, model_id.to_string())
         })?;
         let (width, height) = (cursor.u64(object)?, cursor.u64(object)?);
         let mut params = Vec::with_capacity(model.parameter_count);
         for _ in 0..model.parameter_count {
-            params.push(f64::from_le_bytes(*cursor.take(object)?));
+            params.push(f64::from_le_bytes(cursor.take(object)?));
         }
         cameras.push(CameraRecord { id, model, width, height, params });
     }
@@ -131,8 +150,7 @@ pub(super) fn cameras(bytes: &[u8]) -> Result<Vec<CameraRecord>, Fault> {
     Ok(cameras)
 }
 
-pub(super) fn rigs(bytes: &[u8]) -> Result<Vec<RigRecord>, Fault> {
-    let mut cursor = Cursor::new(bytes);
+pub(super) fn rigs<R: BufRead>(mut cursor: Cursor<R>) -> Result<Vec<RigRecord>, Fault> {
     let count = cursor.count(RIG_BYTES, "rigs")?;
     let mut rigs = Vec::with_capacity(count);
     for number in 0..count {
@@ -142,7 +160,7 @@ pub(super) fn rigs(bytes: &[u8]) -> Result<Vec<RigRecord>, Fault> {
     Ok(rigs)
 }
 
-fn rig(cursor: &mut Cursor, object: impl Fn() -> String + Copy) -> Result<RigRecord, Fault> {
+fn rig<R: BufRead>(cursor: &mut Cursor<R>, object: impl Fn() -> String + Copy) -> Result<RigRecord, Fault> {
     let id = cursor.u32(object)?;
     let sensor_count = u64::from(cursor.u32(object)?);
     let reference = if sensor_count > 0 { Some(sensor(cursor, object)?) } else { None };
@@ -154,19 +172,18 @@ fn rig(cursor: &mut Cursor, object: impl Fn() -> String + Copy) -> Result<RigRec
         let pose = match cursor.take::<1>(object)? {
             [0] => None,
             [1] => Some(cursor.pose(object)?),
-            [other] => return Err(Fault::new(at, object(), "0 or 1 for a sensor's pose", other.to_string())),
+            [other] => return Err(Fault::malformed(at, object(), "0 or 1 for a sensor's pose", other.to_string())),
         };
         others.push((sensor, pose));
     }
     Ok(RigRecord { id, reference, others })
 }
 
-fn sensor(cursor: &mut Cursor, object: impl Fn() -> String + Copy) -> Result<SensorRecord, Fault> {
+fn sensor<R: BufRead>(cursor: &mut Cursor<R>, object: impl Fn() -> String + Copy) -> Result<SensorRecord, Fault> {
     Ok(SensorRecord { kind: cursor.i32(object)?, id: cursor.u32(object)? })
 }
 
-pub(super) fn frames(bytes: &[u8]) -> Result<Vec<FrameRecord>, Fault> {
-    let mut cursor = Cursor::new(bytes);
+pub(super) fn frames<R: BufRead>(mut cursor: Cursor<R>) -> Result<Vec<FrameRecord>, Fault> {
     let count = cursor.count(FRAME_BYTES, "frames")?;
     let mut frames = Vec::with_capacity(count);
     for number in 0..count {
@@ -185,68 +202,55 @@ pub(super) fn frames(bytes: &[u8]) -> Result<Vec<FrameRecord>, Fault> {
     Ok(frames)
 }
 
-/// Walks over the images' heads, then decodes the observations, most of the file, in parallel.
-pub(super) fn images(bytes: &[u8]) -> Result<Vec<ImageRecord>, Fault> {
-    let mut cursor = Cursor::new(bytes);
+pub(super) fn images<R: BufRead>(mut cursor: Cursor<R>) -> Result<Vec<ImageRecord>, Fault> {
     let count = cursor.count(IMAGE_BYTES, "images")?;
-    let mut heads = Vec::with_capacity(count);
+    let mut images = Vec::with_capacity(count);
     for number in 0..count {
-        heads.push(image_head(&mut cursor, || format!("image record {} of {count}", number + 1))?);
+        images.push(image(&mut cursor, || format!("image record {} of {count}", number + 1))?);
     }
     cursor.finish(count, "images")?;
-    let images = heads.into_par_iter().map(|(mut image, observations)| {
-        image.observations = observations.as_chunks().0.iter().map(observation).collect();
-        image
-    });
-    Ok(images.collect())
+    Ok(images)
 }
 
-/// An image without its observations, and their bytes.
-fn image_head<'a>(
-    cursor: &mut Cursor<'a>,
-    object: impl Fn() -> String + Copy,
-) -> Result<(ImageRecord, &'a [u8]), Fault> {
+fn image<R: BufRead>(cursor: &mut Cursor<R>, object: impl Fn() -> String + Copy) -> Result<ImageRecord, Fault> {
     let id = cursor.u32(object)?;
+    let object = || format!("image {id}");
     let cam_from_world = cursor.pose(object)?;
     let camera_id = cursor.u32(object)?;
-    let rest = &cursor.bytes[cursor.at..];
-    let Some(length) = rest.iter().position(|b| *b == 0) else {
-        return Err(Fault::new(cursor.at, format!("image {id}"), "a name that ends with a zero byte", "none"));
-    };
-    cursor.at += length + 1;
+    let mut name = Vec::new();
+    cursor.reader.by_ref().take(MAX_NAME_BYTES).read_until(0, &mut name).map_err(Fault::Unreadable)?;
+    let at = cursor.at;
+    cursor.at += name.len() as u64;
+    if name.pop() != Some(0) {
+        return Err(Fault::malformed(at, object(), "a name that ends with a zero byte", "none"));
+    }
     let count = cursor.u64(object)?;
-    let count = cursor.counted(count, OBSERVATION_BYTES, "observations", || format!("image {id}"))?;
-    let observations = &cursor.bytes[cursor.at..cursor.at + count * OBSERVATION_BYTES];
-    cursor.at += observations.len();
-    let name = rest[..length].to_vec();
-    Ok((ImageRecord { id, cam_from_world, camera_id, name, observations: Vec::new() }, observations))
+    let count = cursor.counted(count, OBSERVATION_BYTES, "observations", object)?;
+    let observations = cursor.take_many(count, object)?.iter().map(observation).collect();
+    Ok(ImageRecord { id, cam_from_world, camera_id, name, observations })
 }
 
 fn observation(raw: &[u8; OBSERVATION_BYTES]) -> ObservationRecord {
     ObservationRecord { x: f64_at(raw, 0), y: f64_at(raw, 8), point_id: u64_at(raw, 16) }
 }
 
-pub(super) fn points(bytes: &[u8]) -> Result<PointRecords, Fault> {
-    let mut cursor = Cursor::new(bytes);
+pub(super) fn points<R: BufRead>(mut cursor: Cursor<R>) -> Result<PointRecords, Fault> {
     let count = cursor.count(POINT_BYTES, "points")?;
-    let track_bytes = cursor.left() - count * POINT_BYTES;
-    if u32::try_from(track_bytes / TRACK_ELEMENT_BYTES).is_err() {
-        return Err(Fault::new(0, "points", "fewer than 2^32 track elements", format!("{track_bytes} bytes of them")));
-    }
-    let mut points = PointRecords::with_capacity(count, track_bytes / TRACK_ELEMENT_BYTES);
+    let track_bytes = cursor.left() - (count * POINT_BYTES) as u64;
+    let track_count = u32::try_from(track_bytes / TRACK_ELEMENT_BYTES as u64).map_err(|_| {
+        Fault::malformed(0, "points", "fewer than 2^32 track elements", format!("{track_bytes} bytes of them"))
+    })?;
+    let mut points = PointRecords::with_capacity(count, track_count as usize);
     for number in 0..count {
-        let object = || format!("point record {} of {count}", number + 1);
-        let raw: &[u8; POINT_BYTES] = cursor.take(object)?;
-        let id = u64_at(raw, 0);
+        let raw: [u8; POINT_BYTES] = cursor.take(|| format!("point record {} of {count}", number + 1))?;
+        let id = u64_at(&raw, 0);
         points.ids.push(id);
-        points.positions.push(std::array::from_fn(|i| f64_at(raw, 8 + 8 * i)));
+        points.positions.push(std::array::from_fn(|i| f64_at(&raw, 8 + 8 * i)));
         points.colors.push([raw[32], raw[33], raw[34]]);
-        points.errors.push(f64_at(raw, 35));
-        let length = u64_at(raw, 43);
-        let length = cursor.counted(length, TRACK_ELEMENT_BYTES, "track elements", || format!("point {id}"))?;
-        let track = &cursor.bytes[cursor.at..cursor.at + length * TRACK_ELEMENT_BYTES];
-        cursor.at += track.len();
-        points.track_elements.extend(track.as_chunks().0.iter().map(track_element));
+        points.errors.push(f64_at(&raw, 35));
+        let object = || format!("point {id}");
+        let length = cursor.counted(u64_at(&raw, 43), TRACK_ELEMENT_BYTES, "track elements", object)?;
+        points.track_elements.extend(cursor.take_many(length, object)?.iter().map(track_element));
         points.track_starts.push(points.track_elements.len() as u32);
     }
     cursor.finish(count, "points")?;

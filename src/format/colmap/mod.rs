@@ -8,11 +8,13 @@ mod records;
 mod text;
 mod write;
 
-use std::fs;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
+use binary::Cursor;
 pub use records::*;
-pub use write::{write_cameras, write_frames, write_images, write_points, write_rigs};
+pub use write::{cameras_file, frames_file, rigs_file, write_images, write_points};
 
 /// Files that every model has; `rigs` and `frames` come with newer releases only.
 const NEEDED_STEMS: [&str; 3] = ["cameras", "images", "points3D"];
@@ -32,7 +34,7 @@ pub enum Place {
     /// From 1.
     Line(usize),
     /// From 0.
-    Byte(usize),
+    Byte(u64),
 }
 
 impl std::fmt::Display for Place {
@@ -44,24 +46,22 @@ impl std::fmt::Display for Place {
     }
 }
 
-/// What was wrong at a byte of a file; the reader of the whole file adds its path and, for text, the line.
+/// What was wrong in a file; the reader of the whole file adds its path and, for text, the line.
 #[derive(Debug)]
-struct Fault {
-    at: usize,
-    object: String,
-    expected: String,
-    got: String,
+enum Fault {
+    Unreadable(std::io::Error),
+    Malformed { at: u64, object: String, expected: String, got: String },
 }
 
 impl Fault {
-    fn new(at: usize, object: impl Into<String>, expected: impl Into<String>, got: impl Into<String>) -> Fault {
-        Fault { at, object: object.into(), expected: expected.into(), got: got.into() }
+    fn malformed(at: u64, object: impl Into<String>, expected: impl Into<String>, got: impl Into<String>) -> Fault {
+        Fault::Malformed { at, object: object.into(), expected: expected.into(), got: got.into() }
     }
 }
 
-/// Whether `folder` holds the three files of a model, in either encoding (not whether they can be read).
-pub fn is_model_folder(folder: &Path) -> bool {
-    NEEDED_STEMS.iter().all(|stem| find(folder, stem).is_some())
+/// Which of the files that every model has are not in `folder`, in either encoding.
+pub fn missing_files(folder: &Path) -> Vec<&'static str> {
+    NEEDED_STEMS.into_iter().filter(|stem| find(folder, stem).is_none()).collect()
 }
 
 /// Reads every record file of `folder`. Whether a file is binary or text is judged by its content.
@@ -86,37 +86,58 @@ fn find(folder: &Path, stem: &str) -> Option<PathBuf> {
     ["bin", "txt"].iter().map(|ext| folder.join(format!("{stem}.{ext}"))).find(|path| path.is_file())
 }
 
-type Parser<T> = fn(&[u8]) -> Result<T, Fault>;
+type BinaryParser<T> = fn(Cursor<BufReader<File>>) -> Result<T, Fault>;
+type TextParser<T> = fn(&[u8]) -> Result<T, Fault>;
 
-fn read_optional<T>(folder: &Path, stem: &str, bin: Parser<T>, txt: Parser<T>) -> Result<Option<T>, ColmapError> {
+/// Bytes fetched from a binary file at once.
+const READ_BYTES: usize = 1 << 18;
+
+fn read_optional<T>(
+    folder: &Path,
+    stem: &str,
+    binary: BinaryParser<T>,
+    text: TextParser<T>,
+) -> Result<Option<T>, ColmapError> {
     if find(folder, stem).is_none() {
         return Ok(None);
     }
-    read_file(folder, stem, bin, txt).map(Some)
+    read_file(folder, stem, binary, text).map(Some)
 }
 
-fn read_file<T>(folder: &Path, stem: &str, bin: Parser<T>, txt: Parser<T>) -> Result<T, ColmapError> {
+fn read_file<T>(folder: &Path, stem: &str, binary: BinaryParser<T>, text: TextParser<T>) -> Result<T, ColmapError> {
     let path = find(folder, stem).unwrap_or_else(|| folder.join(format!("{stem}.bin")));
-    let bytes = match fs::read(&path) {
-        Ok(bytes) => bytes,
-        Err(source) => return Err(ColmapError::Unreadable { path, source }),
-    };
-    let is_text = is_text(&bytes, path.extension().is_some_and(|e| e == "txt"));
-    let parsed = if is_text { txt(&bytes) } else { bin(&bytes) };
-    parsed.map_err(|fault| {
-        let place = if is_text { Place::Line(line_of(&bytes, fault.at)) } else { Place::Byte(fault.at) };
-        ColmapError::Malformed { path, place, object: fault.object, expected: fault.expected, got: fault.got }
+    let mut bytes = Vec::new();
+    parse(&path, &mut bytes, binary, text).map_err(|fault| match fault {
+        Fault::Unreadable(source) => ColmapError::Unreadable { path: path.clone(), source },
+        Fault::Malformed { at, object, expected, got } => {
+            let place = if bytes.is_empty() { Place::Byte(at) } else { Place::Line(line_of(&bytes, at)) };
+            ColmapError::Malformed { path: path.clone(), place, object, expected, got }
+        }
     })
 }
 
-/// A binary file starts with a count of 8 bytes whose high ones are zero, and text never holds a zero byte.
-fn is_text(bytes: &[u8], named_as_text: bool) -> bool {
-    match bytes.first_chunk::<8>() {
-        Some(start) => !start.contains(&0),
+/// Text is read whole, into `bytes`.
+fn parse<T>(path: &Path, bytes: &mut Vec<u8>, binary: BinaryParser<T>, text: TextParser<T>) -> Result<T, Fault> {
+    let file = File::open(path).map_err(Fault::Unreadable)?;
+    let length = file.metadata().map_err(Fault::Unreadable)?.len();
+    let mut reader = BufReader::with_capacity(READ_BYTES, file);
+    let start = reader.fill_buf().map_err(Fault::Unreadable)?;
+    if !is_text(start, path.extension().is_some_and(|e| e == "txt")) {
+        return binary(Cursor::new(reader, length));
+    }
+    bytes.reserve_exact(usize::try_from(length).unwrap_or(0));
+    reader.read_to_end(bytes).map_err(Fault::Unreadable)?;
+    text(bytes)
+}
+
+/// A binary file starts with a count of 8 bytes, which are not all letters, digits and blanks (the high ones are zero).
+fn is_text(start: &[u8], named_as_text: bool) -> bool {
+    match start.first_chunk::<8>() {
+        Some(start) => start.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()),
         None => named_as_text,
     }
 }
 
-fn line_of(bytes: &[u8], at: usize) -> usize {
-    1 + bytes[..at.min(bytes.len())].iter().filter(|b| **b == b'\n').count()
+fn line_of(bytes: &[u8], at: u64) -> usize {
+    1 + bytes.iter().zip(0..at).filter(|(byte, _)| **byte == b'\n').count()
 }

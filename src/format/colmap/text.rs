@@ -10,6 +10,9 @@ use super::records::*;
 /// Points are parsed in parallel in pieces of about this many bytes; any size gives the same result.
 const PIECE_BYTES: usize = 1 << 20;
 
+/// Characters of a file that a message repeats at most.
+const SHOWN_BYTES: usize = 40;
+
 /// One line of a file, read value by value.
 struct Line<'a> {
     /// What is left of the line.
@@ -17,22 +20,25 @@ struct Line<'a> {
     /// Position of `rest` in the file.
     at: usize,
     kind: &'static str,
-    /// The record's id, for messages; empty before it is known.
-    id: String,
+    /// The record's id, for messages, once it is known.
+    id: Option<u64>,
 }
 
 impl<'a> Line<'a> {
     fn new(bytes: &'a [u8], at: usize, kind: &'static str) -> Line<'a> {
-        Line { rest: bytes, at, kind, id: String::new() }
+        Line { rest: bytes, at, kind, id: None }
     }
 
     fn fault(&self, expected: &str, got: &[u8]) -> Fault {
         let got = match got {
             [] => "the end of the line".to_string(),
-            token => format!("`{}`", String::from_utf8_lossy(&token[..token.len().min(40)])),
+            token => {
+                let shown = &token[..token.len().min(SHOWN_BYTES)];
+                format!("`{}`", String::from_utf8_lossy(shown).escape_debug())
+            }
         };
-        let object = if self.id.is_empty() { self.kind.to_string() } else { format!("{} {}", self.kind, self.id) };
-        Fault::new(self.at, object, expected, got)
+        let object = self.id.map_or(self.kind.to_string(), |id| format!("{} {id}", self.kind));
+        Fault::malformed(self.at as u64, object, expected, got)
     }
 
     fn skip(&mut self, count: usize) {
@@ -111,7 +117,7 @@ impl<'a> Line<'a> {
 
     fn record_id(&mut self, expected: &str) -> Result<u32, Fault> {
         let id = self.u32(expected)?;
-        self.id = id.to_string();
+        self.id = Some(id.into());
         Ok(id)
     }
 
@@ -265,7 +271,7 @@ pub(super) fn points(bytes: &[u8]) -> Result<PointRecords, Fault> {
     let parts: Vec<_> = parts.into_iter().collect::<Result<_, _>>()?;
     let track_count: usize = parts.iter().map(|p| p.track_elements.len()).sum();
     if u32::try_from(track_count).is_err() {
-        return Err(Fault::new(0, "points", "fewer than 2^32 track elements", track_count.to_string()));
+        return Err(Fault::malformed(0, "points", "fewer than 2^32 track elements", track_count.to_string()));
     }
     let mut all = PointRecords::with_capacity(parts.iter().map(|p| p.ids.len()).sum(), track_count);
     for part in parts {
@@ -302,7 +308,9 @@ fn points_of_piece(start: usize, piece: &[u8]) -> Result<PointRecords, Fault> {
 }
 
 fn point(mut line: Line, points: &mut PointRecords) -> Result<(), Fault> {
-    points.ids.push(line.u64("a point id")?);
+    let id = line.u64("a point id")?;
+    line.id = Some(id);
+    points.ids.push(id);
     let mut position = [0.0; 3];
     for value in &mut position {
         *value = line.f64("a position X Y Z")?;
@@ -320,4 +328,55 @@ fn point(mut line: Line, points: &mut PointRecords) -> Result<(), Fault> {
     }
     points.track_starts.push(points.track_elements.len() as u32);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_their_blanks_and_lines_may_end_as_on_windows() {
+        let file =
+            b"# comment\r\n\r\n7 1 0 0 0 0 0 0 1 my photos/first one.jpg \r\n1.5 2.5 -1\r\n8 1 0 0 0 0 0 0 1 b\r\n\r\n";
+        let images = images(file).unwrap();
+        assert_eq!((images[0].id, images[0].name.as_slice()), (7, &b"my photos/first one.jpg"[..]));
+        assert_eq!(images[0].observations, [ObservationRecord { x: 1.5, y: 2.5, point_id: NO_POINT }]);
+        assert_eq!((images[1].name.as_slice(), images[1].observations.len()), (&b"b"[..], 0));
+    }
+
+    #[test]
+    fn the_last_image_may_lack_its_second_line() {
+        let images = images(b"7 1 0 0 0 0 0 0 1 a").unwrap();
+        assert_eq!((images.len(), images[0].observations.len()), (1, 0));
+    }
+
+    #[test]
+    fn points_of_many_pieces_stand_in_their_order() {
+        let count = 3 * PIECE_BYTES / 30;
+        let line = |id: usize| format!("{id} {id}.5 -1e-3 2 1 2 3 0.25 {} {}\n", id % 7, id % 5);
+        let file: String = (0..count).map(line).collect();
+        assert!(pieces(file.as_bytes()).len() > 2);
+        let points = points(file.as_bytes()).unwrap();
+        assert!(points.ids.iter().copied().eq(0..count as u64));
+        assert!(points.positions.iter().enumerate().all(|(i, p)| *p == [i as f64 + 0.5, -1e-3, 2.0]));
+        assert!(points.track_starts.iter().copied().eq(0..=count as u32));
+        assert!(points.track_elements.iter().enumerate().all(|(i, e)| *e == ((i % 7) as u32, (i % 5) as u32)));
+    }
+
+    #[test]
+    fn of_several_faults_the_first_is_told() {
+        let mut file: Vec<u8> = (0..4 * PIECE_BYTES / 20).flat_map(|_| *b"1 2 3 4 0 0 0 0.5\n").collect();
+        let last = file.len() - 5;
+        (file[PIECE_BYTES / 2], file[last]) = (b'x', b'x');
+        let Err(Fault::Malformed { at, .. }) = points(&file) else { panic!() };
+        assert!((at as usize) < PIECE_BYTES);
+    }
+
+    #[test]
+    fn numbers_beyond_their_range_are_refused() {
+        for file in ["18446744073709551616 0 0 0 1 2 3 0", "1 0 0 0 1 2 3 0 4294967296 0", "-1 0 0 0 1 2 3 0"] {
+            assert!(points(file.as_bytes()).is_err(), "{file}");
+        }
+        assert!(points(b"18446744073709551615 0 0 0 255 2 3 0 4294967295 0").is_ok());
+    }
 }

@@ -1,0 +1,418 @@
+//! Damaged, lying and odd reconstructions: each is met with one clear error, or tolerated with a counted warning.
+//! `tests/data/reconstruction/make_damaged.py` makes the files and says what is wrong in each.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use cityweld::export::colmap::write_colmap;
+use cityweld::export::ply::write_ply;
+use cityweld::reconstruction::{PointIndex, Reconstruction, WarningKind, read_reconstruction};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+fn data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reconstruction")
+}
+
+fn files_of(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// The model `name`: the files of its folder, the others as in `sound` or `sound_framed`.
+fn model(kind: &str, name: &str) -> tempfile::TempDir {
+    let folder = data().join(kind);
+    let own = files_of(&folder.join(name));
+    let is_framed = own.iter().any(|path| ["rigs", "frames"].contains(&path.file_stem().unwrap().to_str().unwrap()));
+    let base = files_of(&folder.join(if is_framed { "sound_framed" } else { "sound" }));
+    let made = tempfile::tempdir().unwrap();
+    for path in base.iter().chain(&own) {
+        fs::copy(path, made.path().join(path.file_name().unwrap())).unwrap();
+    }
+    made
+}
+
+/// (folder below tests/data/reconstruction, what the message says beside the path)
+const REFUSED_MODELS: [(&str, &[&str]); 57] = [
+    ("binary/cameras_cut", &["cameras.bin", "byte 56", "camera record 1 of 1", "8 more bytes", "after 5"]),
+    ("binary/images_cut", &["images.bin", "image 11", "at most 2 observations", "a count of 3"]),
+    ("binary/points_cut", &["points3D.bin", "point record 3 of 3", "51 more bytes", "after 49"]),
+    ("binary/cameras_count_lies", &["cameras.bin", "byte 8", "count of cameras", "a count of 4000000000"]),
+    ("binary/images_count_lies", &["images.bin", "byte 8", "count of images", "a count of 4000000000"]),
+    ("binary/points_count_lies", &["points3D.bin", "byte 8", "count of points", "at most 3 points in", "4000000000"]),
+    ("binary/points_count_overflows", &["points3D.bin", "count of points", "a count of 18446744073709551615"]),
+    ("binary/points_count_too_low", &["points3D.bin", "after 2 points", "the end of the file", "59 bytes more"]),
+    ("binary/keypoint_count_lies", &["images.bin", "image 10", "observations", "a count of 4000000000"]),
+    ("binary/track_length_lies", &["points3D.bin", "point 5", "track elements", "a count of 4000000000"]),
+    ("binary/name_without_end", &["images.bin", "image 10", "a name that ends with a zero byte", "none"]),
+    ("binary/camera_model_unknown", &["cameras.bin", "camera 1", "a camera model id from 0 to 17", "got 99"]),
+    ("binary/camera_nan", &["cameras.bin", "camera 1", "finite parameters", "NaN"]),
+    ("binary/camera_without_focal_length", &["cameras.bin", "camera 1", "a focal length above zero"]),
+    ("binary/camera_without_size", &["cameras.bin", "camera 1", "at least one pixel", "0 x 480 pixels"]),
+    ("binary/camera_id_twice", &["cameras.bin", "camera 1", "ids that differ", "this id twice"]),
+    ("binary/image_id_twice", &["images.bin", "image 10", "ids that differ", "this id twice"]),
+    ("binary/image_of_missing_camera", &["images.bin", "image 10", "a camera of the model", "camera 3"]),
+    ("binary/image_position_nan", &["images.bin", "image 10", "a finite translation", "NaN"]),
+    ("binary/image_rotation_zero", &["images.bin", "image 10", "a finite quaternion other than zero"]),
+    ("binary/keypoint_nan", &["images.bin", "keypoint 0 of image 10", "a finite position"]),
+    ("binary/point_id_twice", &["points3D.bin", "point 5", "ids that differ", "this id twice"]),
+    ("binary/point_nan", &["points3D.bin", "point 5", "a finite position", "NaN"]),
+    ("binary/point_error_nan", &["points3D.bin", "point 5", "an error that is a number", "NaN"]),
+    ("binary/track_of_missing_image", &["points3D.bin", "track of point 5", "images of the model", "image 12"]),
+    ("binary/track_of_missing_keypoint", &["track of point 5", "one of the 3 keypoints of image 11", "keypoint 3"]),
+    ("binary/no_points", &["the reconstruction has no points"]),
+    ("binary/empty_files", &["cameras.bin", "byte 0", "count of cameras", "8 more bytes", "the end of the file"]),
+    ("binary/frames_cut", &["frames.bin", "frame record 2 of 2"]),
+    ("binary/frames_data_count_lies", &["frames.bin", "frame record 1 of 1", "data ids", "a count of 4294967295"]),
+    ("binary/frame_id_twice", &["frames.bin", "frame 1", "ids that differ"]),
+    ("binary/frame_of_missing_rig", &["frames.bin", "frame 1", "a rig of the model", "rig 4"]),
+    ("binary/frame_position_nan", &["frames.bin", "frame 1", "a finite translation"]),
+    ("binary/rig_flag_unknown", &["rigs.bin", "rig record 1 of 1", "0 or 1 for a sensor's pose", "got 7"]),
+    ("text/camera_model_unknown", &["cameras.txt", "line 2", "camera 1", "SIMPLE_PINHOLE, PINHOLE", "`FANCY`"]),
+    ("text/camera_parameter_missing", &["line 2", "camera 1", "4 parameters of SIMPLE_RADIAL", "end of the line"]),
+    ("text/camera_parameter_extra", &["cameras.txt", "line 2", "camera 1", "the end of the line", "`7`"]),
+    ("text/image_line_cut", &["images.txt", "line 2", "image 10", "a translation TX TY TZ", "the end of the line"]),
+    ("text/image_of_missing_camera", &["images.txt", "image 11", "a camera of the model", "camera 3"]),
+    ("text/keypoints_cut", &["images.txt", "line 5", "image 11", "a keypoint X Y POINT3D_ID", "the end of the line"]),
+    ("text/keypoint_no_number", &["images.txt", "line 3", "image 10", "a keypoint X Y POINT3D_ID", "`11O.5`"]),
+    ("text/keypoint_nan", &["images.txt", "keypoint 1 of image 10", "a finite position"]),
+    ("text/keypoint_of_negative_point", &["images.txt", "line 3", "image 10", "a point id or -1", "`-7`"]),
+    ("text/keypoint_line_missing", &["images.txt", "line 3", "image 10", "second line"]),
+    ("text/point_position_word", &["points3D.txt", "line 3", "point 7", "a position X Y Z", "`far`"]),
+    ("text/point_position_infinite", &["points3D.txt", "point 7", "a finite position", "inf"]),
+    ("text/point_color_300", &["points3D.txt", "line 2", "point 5", "from 0 to 255", "`300`"]),
+    ("text/point_line_cut", &["points3D.txt", "line 4", "point 9", "a colour", "the end of the line"]),
+    ("text/point_id_twice", &["points3D.txt", "point 5", "ids that differ"]),
+    ("text/track_cut", &["points3D.txt", "line 4", "point 9", "an observation's index", "the end of the line"]),
+    ("text/track_image_beyond_u32", &["points3D.txt", "line 4", "point 9", "below 2^32", "`99999999999`"]),
+    ("text/track_of_missing_image", &["points3D.txt", "track of point 9", "image 12"]),
+    ("text/track_of_missing_keypoint", &["points3D.txt", "track of point 9", "keypoint 3"]),
+    ("text/no_points", &["the reconstruction has no points"]),
+    ("text/rig_sensor_unknown", &["rigs.txt", "line 2", "rig 1", "a sensor type, CAMERA or IMU", "`LIDAR`"]),
+    ("text/rig_cut", &["rigs.txt", "line 2", "rig 1", "a sensor type", "the end of the line"]),
+    ("text/frame_cut", &["frames.txt", "line 2", "frame 1", "the end of the line"]),
+];
+
+#[test]
+fn every_damaged_model_is_refused_with_place_and_object() {
+    let mut failures = Vec::new();
+    for (name, fragments) in REFUSED_MODELS {
+        let (kind, name) = name.rsplit_once('/').unwrap();
+        let folder = model(kind, name);
+        let message = read_reconstruction(folder.path()).expect_err(name).to_string();
+        println!("{kind}/{name}: {message}");
+        assert!(message.starts_with(folder.path().to_str().unwrap()), "{name}: {message}");
+        let absent = fragments.iter().filter(|fragment| !message.contains(**fragment));
+        failures.extend(absent.map(|fragment| format!("{name}: `{fragment}` is not in: {message}")));
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn every_damaged_model_file_has_an_expectation() {
+    for kind in ["binary", "text"] {
+        for folder in files_of(&data().join(kind)) {
+            let name = folder.file_name().unwrap().to_str().unwrap();
+            let listed = REFUSED_MODELS.iter().any(|(listed, _)| *listed == format!("{kind}/{name}"));
+            assert!(listed || name.starts_with("sound") || name.starts_with("odd_"), "{kind}/{name}");
+        }
+    }
+}
+
+fn check_sound(r: &Reconstruction) {
+    assert!(r.warnings.is_empty(), "{:?}", r.warnings);
+    assert_eq!(r.point_ids, [5, 7, 9]);
+    assert_eq!(r.points[1].coords.as_slice(), [0.25, -0.5, 0.875]);
+    assert_eq!((r.colors[2], r.point_errors_px[2]), ([10, 20, 30], 0.5));
+    let names: Vec<_> = r.images.iter().map(|image| (image.id, image.name.as_str())).collect();
+    assert_eq!(names, [(10, "a b/first photo.jpg"), (11, "second.jpg")]);
+    let seen: Vec<_> = r.images[0].observations.iter().map(|o| o.point).collect();
+    assert_eq!(seen, [Some(PointIndex(0)), Some(PointIndex(1)), None]);
+    let track: Vec<_> = r.track(PointIndex(1)).iter().map(|(image, keypoint)| (image.0, *keypoint)).collect();
+    assert_eq!(track, [(0, 1), (1, 1)]);
+    assert_eq!(r.cameras[0].params, [500.0, 320.0, 240.0, -0.05]);
+}
+
+#[test]
+fn sound_models_say_the_same_in_binary_and_text() {
+    for name in ["sound", "sound_framed"] {
+        for kind in ["binary", "text"] {
+            let read = read_reconstruction(model(kind, name).path()).unwrap();
+            assert_eq!(read.colmap.as_ref().unwrap().frames.is_some(), name == "sound_framed");
+            check_sound(&read);
+        }
+    }
+}
+
+#[test]
+fn a_model_is_found_in_the_folders_where_tools_put_it_and_by_its_files() {
+    for sub in ["", "sparse/0", "sparse", "0"] {
+        let top = tempfile::tempdir().unwrap();
+        let folder = top.path().join(sub);
+        fs::create_dir_all(&folder).unwrap();
+        for path in files_of(&data().join("text/sound")) {
+            fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+        }
+        check_sound(&read_reconstruction(top.path()).unwrap());
+        check_sound(&read_reconstruction(&folder.join("points3D.txt")).unwrap());
+    }
+}
+
+#[test]
+fn further_models_beside_the_one_read_are_told() {
+    let top = tempfile::tempdir().unwrap();
+    for number in ["0", "1", "2"] {
+        let folder = top.path().join("sparse").join(number);
+        fs::create_dir_all(&folder).unwrap();
+        for path in files_of(&data().join("binary/sound")) {
+            fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+        }
+    }
+    let warnings = read_reconstruction(top.path()).unwrap().warnings;
+    assert_eq!((warnings.len(), warnings[0].kind, warnings[0].count), (1, WarningKind::FurtherModels, 2));
+    assert!(warnings[0].to_string().contains("sparse/1"), "{}", warnings[0]);
+}
+
+#[test]
+fn content_decides_between_binary_and_text_whatever_the_name() {
+    let top = tempfile::tempdir().unwrap();
+    for path in files_of(&data().join("text/sound")) {
+        fs::copy(&path, top.path().join(path.file_name().unwrap()).with_extension("bin")).unwrap();
+    }
+    check_sound(&read_reconstruction(top.path()).unwrap());
+}
+
+#[test]
+fn what_is_no_reconstruction_is_told_from_what_is_not_there() {
+    let top = tempfile::tempdir().unwrap();
+    let message = |path: &Path| read_reconstruction(path).unwrap_err().to_string();
+    assert!(message(top.path()).contains("cameras, images and points3D"), "{}", message(top.path()));
+    assert!(message(&top.path().join("none")).starts_with("cannot read"), "{}", message(&top.path().join("none")));
+    let stray = top.path().join("cloud.ply");
+    fs::write(&stray, "solid cube\n").unwrap();
+    assert!(message(&stray).contains("another kind of file"), "{}", message(&stray));
+    fs::copy(data().join("binary/sound/images.bin"), top.path().join("images.bin")).unwrap();
+    assert!(message(top.path()).contains("without cameras and points3D"), "{}", message(top.path()));
+}
+
+#[test]
+fn odd_models_are_read_with_one_warning_of_each_kind() {
+    let expected = [
+        ("odd_keypoint_of_missing_point", WarningKind::ObservationsOfMissingPoints, 1),
+        // The image links keypoint 1 to point 9, the track of point 7 lists it.
+        ("odd_track_contradicted", WarningKind::TracksThatImagesContradict, 2),
+        ("odd_point_without_track", WarningKind::PointsWithoutTrack, 1),
+        ("odd_image_without_keypoints", WarningKind::ImagesWithoutObservations, 1),
+        ("odd_name_latin1", WarningKind::NamesNotUtf8, 1),
+        ("odd_rotation_of_length_two", WarningKind::UnnormalizedQuaternions, 1),
+        ("odd_pose_of_frame_differs", WarningKind::PosesThatFramesContradict, 1),
+    ];
+    for (name, kind, count) in expected {
+        let read = read_reconstruction(model("binary", name).path()).unwrap();
+        let found: Vec<_> = read.warnings.iter().map(|w| (w.kind, w.count)).collect();
+        assert_eq!(found, [(kind, count)], "{name}");
+        println!("{}", read.warnings[0]);
+        match kind {
+            WarningKind::NamesNotUtf8 => assert_eq!(read.images[0].name, "Stra\u{df}e.jpg"),
+            WarningKind::PosesThatFramesContradict => {
+                assert_eq!(read.images[0].cam_from_sfm_translation.as_slice(), [1.0, 2.0, 3.0]);
+            }
+            WarningKind::ObservationsOfMissingPoints => assert_eq!(read.images[0].observations[2].point, None),
+            _ => {}
+        }
+    }
+}
+
+/// (file, what the message says)
+const REFUSED_CLOUDS: [(&str, &[&str]); 21] = [
+    ("bad_cut", &["byte 178", "element vertex", "3 rows of at least 27 bytes", "80 bytes"]),
+    ("bad_count_lies", &["element vertex", "4000000000 rows", "81 bytes to the end"]),
+    ("bad_count_lies_ascii", &["4000000000 rows of vertex", "the end of the file after 3"]),
+    ("bad_count_overflows", &["18446744073709551615"]),
+    ("bad_count_too_low", &["the end of the file", "27 bytes more"]),
+    ("bad_count_too_low_ascii", &["line 10", "the end of the file", "-1.5"]),
+    ("bad_count_negative", &["header line 3", "-3"]),
+    ("bad_list_length_lies", &["element face"]),
+    ("bad_no_vertex", &["expected an element `vertex`"]),
+    ("bad_no_z", &["expected a property `z`"]),
+    ("bad_x_list", &["`x` of vertex is a list"]),
+    ("bad_no_header_end", &["end_header"]),
+    ("bad_format", &["header line 2", "binary_middle_endian"]),
+    ("bad_row_short", &["line 9", "a number for `z` of vertex", "the end of the line"]),
+    ("bad_row_long", &["line 9", "3 values", "`7`"]),
+    ("bad_row_word", &["line 9", "a number for `y` of vertex", "`five 6`"]),
+    ("bad_element_without_properties", &["the element `ghost` has no properties"]),
+    ("bad_element_twice", &["the element `vertex` is there twice"]),
+    ("bad_property_twice", &["the property `x` is there twice"]),
+    ("bad_no_points", &["no points"]),
+    ("bad_all_nan", &["no points"]),
+];
+
+#[test]
+fn every_damaged_cloud_is_refused_with_its_place() {
+    let mut failures = Vec::new();
+    for (name, fragments) in REFUSED_CLOUDS {
+        let path = data().join("ply").join(name).with_extension("ply");
+        let message = read_reconstruction(&path).expect_err(name).to_string();
+        println!("{name}: {message}");
+        assert!(message.starts_with(path.to_str().unwrap()) && !message.contains('\n'), "{name}: {message}");
+        let absent = fragments.iter().filter(|fragment| !message.contains(**fragment));
+        failures.extend(absent.map(|fragment| format!("{name}: `{fragment}` is not in: {message}")));
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+    let bad = files_of(&data().join("ply"))
+        .into_iter()
+        .filter(|p| p.file_name().unwrap().to_str().unwrap().starts_with("bad"));
+    assert_eq!(bad.count(), REFUSED_CLOUDS.len());
+}
+
+#[test]
+fn sound_clouds_of_every_kind_say_the_same() {
+    let mut read_files = 0;
+    for path in files_of(&data().join("ply")) {
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        if !name.starts_with("sound") {
+            continue;
+        }
+        read_files += 1;
+        let read = read_reconstruction(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert!(read.warnings.is_empty() && read.images.is_empty() && read.colmap.is_none(), "{name}");
+        let expected = [[0.25, -0.5, 1.125], [1.0, 2.0, 3.0], [-1.5, 0.0, 1e-3]];
+        let tolerance = if name == "sound_float" { 1e-9 } else { 0.0 };
+        for (point, expected) in read.points.iter().zip(expected) {
+            assert!(point.iter().zip(expected).all(|(a, b)| (a - b).abs() <= tolerance), "{name} {point}");
+        }
+        let colors = [[10, 20, 30], [0, 128, 255], [1, 2, 3]];
+        let without_colors = ["sound_mesh_first", "sound_odd_header", "sound_crlf"].contains(&name);
+        assert_eq!(read.colors, if without_colors { vec![] } else { colors.to_vec() }, "{name}");
+        assert_eq!(read.normals.len(), if name == "sound_mesh_first" { 3 } else { 0 }, "{name}");
+    }
+    assert_eq!(read_files, 8);
+}
+
+#[test]
+fn odd_rows_of_clouds_are_left_out_and_counted() {
+    for name in ["odd_nan_rows", "odd_nan_rows_binary"] {
+        let read = read_reconstruction(&data().join("ply").join(name).with_extension("ply")).unwrap();
+        assert_eq!(read.points.len(), 2, "{name}");
+        let warning = &read.warnings[0];
+        assert_eq!((warning.kind, warning.count), (WarningKind::PointsWithoutPosition, 1), "{name}");
+        assert!(warning.to_string().contains("vertex 1"), "{warning}");
+    }
+    let read = read_reconstruction(&data().join("ply/odd_zero_normal.ply")).unwrap();
+    let normals: Vec<_> = read.normals.iter().map(|n| [n.x, n.y, n.z]).collect();
+    assert_eq!(normals, [[0.0, 0.0, 1.0], [0.0; 3], [0.0; 3]]);
+    assert_eq!((read.warnings[0].kind, read.warnings[0].count), (WarningKind::NormalsWithoutDirection, 2));
+}
+
+/// Reads what a damaged file became; where it still makes sense, writing and reading it again gives the same points.
+fn read_without_panic(path: &Path) -> bool {
+    match read_reconstruction(path) {
+        Ok(read) => {
+            let out = tempfile::tempdir().unwrap();
+            let again = if read.colmap.is_some() {
+                write_colmap(out.path(), &read).unwrap();
+                read_reconstruction(out.path()).unwrap()
+            } else {
+                let cloud = out.path().join("cloud.ply");
+                write_ply(&cloud, &read).unwrap();
+                read_reconstruction(&cloud).unwrap()
+            };
+            assert_eq!(again.points, read.points);
+            true
+        }
+        Err(error) => {
+            let message = error.to_string();
+            assert!(!message.contains(char::is_control) && message.len() < 2000, "{message}");
+            false
+        }
+    }
+}
+
+#[test]
+fn binary_files_cut_anywhere_are_refused() {
+    for name in ["sound", "sound_framed"] {
+        let folder = model("binary", name);
+        for path in files_of(folder.path()) {
+            let whole = fs::read(&path).unwrap();
+            for length in 0..whole.len() {
+                fs::write(&path, &whole[..length]).unwrap();
+                assert!(!read_without_panic(folder.path()), "{} cut to {length}", path.display());
+            }
+            fs::write(&path, &whole).unwrap();
+        }
+    }
+    for name in ["sound_little", "sound_big", "sound_mesh"] {
+        let whole = fs::read(data().join("ply").join(name).with_extension("ply")).unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        for length in 0..whole.len() {
+            fs::write(file.path(), &whole[..length]).unwrap();
+            assert!(!read_without_panic(file.path()), "{name} cut to {length}");
+        }
+    }
+}
+
+#[test]
+fn text_files_cut_anywhere_are_read_or_refused() {
+    for name in ["sound", "sound_framed"] {
+        let folder = model("text", name);
+        for path in files_of(folder.path()) {
+            let whole = fs::read(&path).unwrap();
+            for length in 0..whole.len() {
+                fs::write(&path, &whole[..length]).unwrap();
+                read_without_panic(folder.path());
+            }
+            fs::write(&path, &whole).unwrap();
+        }
+    }
+    let whole = fs::read(data().join("ply/sound_mesh_first.ply")).unwrap();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    for length in 0..whole.len() {
+        fs::write(file.path(), &whole[..length]).unwrap();
+        read_without_panic(file.path());
+    }
+}
+
+/// Damaged copies of each file.
+const FLIPS: usize = 250;
+
+fn flip(whole: &[u8], random: &mut ChaCha8Rng) -> Vec<u8> {
+    let mut damaged = whole.to_vec();
+    for _ in 0..1 + random.next_u32() % 3 {
+        let at = random.next_u32() as usize % damaged.len();
+        damaged[at] = match random.next_u32() % 3 {
+            0 => damaged[at] ^ 1 << (random.next_u32() % 8),
+            1 => 0xFF,
+            _ => random.next_u32() as u8,
+        };
+    }
+    damaged
+}
+
+#[test]
+fn flipped_bytes_give_a_reconstruction_or_an_error_and_no_panic() {
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let (mut read, mut refused) = (0, 0);
+    for (kind, name) in [("binary", "sound_framed"), ("text", "sound_framed")] {
+        let folder = model(kind, name);
+        for path in files_of(folder.path()) {
+            let whole = fs::read(&path).unwrap();
+            for _ in 0..FLIPS {
+                fs::write(&path, flip(&whole, &mut random)).unwrap();
+                *(if read_without_panic(folder.path()) { &mut read } else { &mut refused }) += 1;
+            }
+            fs::write(&path, &whole).unwrap();
+        }
+    }
+    let file = tempfile::NamedTempFile::new().unwrap();
+    for name in ["sound_ascii", "sound_little", "sound_big", "sound_mesh", "sound_mesh_first"] {
+        let whole = fs::read(data().join("ply").join(name).with_extension("ply")).unwrap();
+        for _ in 0..FLIPS {
+            fs::write(file.path(), flip(&whole, &mut random)).unwrap();
+            *(if read_without_panic(file.path()) { &mut read } else { &mut refused }) += 1;
+        }
+    }
+    println!("{read} read, {refused} refused");
+    assert!(read > 100 && refused > 100);
+}

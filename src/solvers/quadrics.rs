@@ -31,10 +31,9 @@
 //! Tests       below; tests/solver_accuracy.rs; golden/*.json
 //! ```
 
-use super::elimination::eliminate;
+use super::elimination::{back_substitute, diagonal_holds, eliminate};
 use super::polynomial::real_roots;
 use super::quaternion::{MONOMIALS, Quaternion, form, monomials, product, rotation, value};
-use super::upright::{back_substitute, diagonal_holds};
 use super::{MOST_POSES, Poses, RANK_TOLERANCE, Row};
 use crate::geometry::{Rotation3, Similarity, Vector3};
 

@@ -37,7 +37,8 @@ fn no_minimal_solver_allocates() {
         (Sought::UprightSimilarity(vertical), &UPRIGHT_SIMILARITY[..]),
     ];
     for (sought, configurations) in families {
-        for points in configurations {
+        for configuration in configurations {
+            let points = configuration.points_per_plane;
             let samples: Vec<_> = (0..300).map(|_| sample(&mut chance, &sought, points).rows).collect();
             let before = ALLOCATIONS.with(Cell::get);
             let poses: usize = samples.iter().map(|rows| solve_minimal(&sought, points, rows).len()).sum();

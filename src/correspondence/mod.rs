@@ -1,6 +1,7 @@
 //! Which patch may lie on which plane of the city, and which poses follow: fields of facets, candidate pairs, the search and its
 //! refinement.
 
+mod cliques;
 mod contenders;
 mod field;
 mod pairing;
@@ -12,6 +13,7 @@ mod sight;
 mod slide;
 mod votes;
 
+pub use cliques::{Cliques, Graph};
 pub use contenders::{Contender, Contest, contest, refiner};
 pub use field::{FacetField, FieldTriangle, Hit, Probe};
 pub use pairing::{Pair, Pairing, Sample};

@@ -6,6 +6,8 @@
 //! unknowns back by substitution once the rotation is known. An orthogonal matrix keeps rounding errors small
 //! whatever the planes, where the inverse of three chosen normals would not (mathematics.md 3.4, 12).
 
+use super::RANK_TOLERANCE;
+
 /// Multiplies `rows` from the left by reflections until their first `K` columns are upper triangular.
 #[inline]
 pub(super) fn eliminate<const M: usize, const C: usize, const K: usize>(rows: &mut [[f64; C]; M]) {
@@ -24,13 +26,14 @@ pub(super) fn eliminate<const M: usize, const C: usize, const K: usize>(rows: &m
         let diagonal = if v[k] > 0.0 { -norm } else { norm };
         let weight = (square - diagonal * v[k]).recip();
         v[k] -= diagonal;
+        // v is zero above k: loops of fixed length cost some products with zero and gain vector instructions.
         let mut along = [0.0; C];
-        for i in k..M {
+        for i in 0..M {
             for j in 0..C {
                 along[j] += v[i] * rows[i][j];
             }
         }
-        for i in k..M {
+        for i in 0..M {
             let step = weight * v[i];
             for j in 0..C {
                 rows[i][j] -= step * along[j];
@@ -41,6 +44,21 @@ pub(super) fn eliminate<const M: usize, const C: usize, const K: usize>(rows: &m
             row[k] = 0.0;
         }
     }
+}
+
+/// Whether the first three columns, triangular normals, span space.
+#[inline]
+pub(super) fn diagonal_holds<const M: usize, const C: usize>(m: &[[f64; C]; M]) -> bool {
+    (0..3).all(|k| m[k][k].abs() > RANK_TOLERANCE)
+}
+
+/// Solves the triangular first three rows for the image of the pivot.
+#[inline]
+pub(super) fn back_substitute<const M: usize, const C: usize>(m: &[[f64; C]; M], right: [f64; 3]) -> [f64; 3] {
+    let z = right[2] / m[2][2];
+    let y = (right[1] - m[1][2] * z) / m[1][1];
+    let x = (right[0] - m[0][1] * y - m[0][2] * z) / m[0][0];
+    [x, y, z]
 }
 
 #[cfg(test)]

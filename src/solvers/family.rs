@@ -30,29 +30,63 @@ impl Sought {
     }
 }
 
-/// Points per plane of the rigid samples: the paper's Table 1, the minimal ones first.
-pub const RIGID: [&[usize]; 10] = [
-    &[3, 2, 1],
-    &[3, 1, 1, 1],
-    &[2, 2, 2],
-    &[2, 2, 1, 1],
-    &[2, 1, 1, 1, 1],
-    &[1, 1, 1, 1, 1, 1],
-    &[3, 3, 1],
-    &[3, 2, 2],
-    &[3, 3, 2],
-    &[3, 3, 3],
+/// One configuration, and what a sample of it costs: for a choice by expected cost, time per sample times expected trials.
+#[derive(Clone, Copy, Debug)]
+pub struct Configuration {
+    /// Points on each plane, largest first.
+    pub points_per_plane: &'static [usize],
+    /// Real poses on average, each of which must be scored (mathematics.md 13).
+    pub poses: f64,
+    /// Time of one solve, all poses: example `table1` on one core of an EPYC at 2 vCPUs, 2026-11-22. Ratios matter.
+    pub solve_us: f64,
+}
+
+const fn costs(points_per_plane: &'static [usize], poses: f64, solve_us: f64) -> Configuration {
+    Configuration { points_per_plane, poses, solve_us }
+}
+
+/// Rigid samples: the paper's Table 1, the minimal ones first.
+pub const RIGID: [Configuration; 10] = [
+    costs(&[3, 2, 1], 4.0, 0.33),
+    costs(&[3, 1, 1, 1], 2.745, 0.36),
+    costs(&[2, 2, 2], 4.612, 2.25),
+    costs(&[2, 2, 1, 1], 3.469, 1.89),
+    costs(&[2, 1, 1, 1, 1], 3.135, 1.73),
+    costs(&[1, 1, 1, 1, 1, 1], 3.026, 2.43),
+    costs(&[3, 3, 1], 2.0, 0.27),
+    costs(&[3, 2, 2], 1.0, 0.86),
+    costs(&[3, 3, 2], 1.0, 0.19),
+    costs(&[3, 3, 3], 1.0, 0.20),
 ];
 
-/// Points per plane of the minimal samples of a similarity.
-pub const SIMILARITY: [&[usize]; 6] =
-    [&[3, 2, 1, 1], &[3, 1, 1, 1, 1], &[2, 2, 2, 1], &[2, 2, 1, 1, 1], &[2, 1, 1, 1, 1, 1], &[1, 1, 1, 1, 1, 1, 1]];
+/// Minimal samples of a similarity.
+pub const SIMILARITY: [Configuration; 6] = [
+    costs(&[3, 2, 1, 1], 2.152, 0.37),
+    costs(&[3, 1, 1, 1, 1], 2.060, 0.38),
+    costs(&[2, 2, 2, 1], 2.601, 2.32),
+    costs(&[2, 2, 1, 1, 1], 2.524, 2.23),
+    costs(&[2, 1, 1, 1, 1, 1], 2.585, 2.30),
+    costs(&[1, 1, 1, 1, 1, 1, 1], 2.722, 3.17),
+];
 
-/// The same for a rigid pose with known vertical.
-pub const UPRIGHT_RIGID: [&[usize]; 2] = [&[2, 1, 1], &[1, 1, 1, 1]];
+/// Minimal samples of a rigid pose with known vertical.
+pub const UPRIGHT_RIGID: [Configuration; 2] = [costs(&[2, 1, 1], 2.0, 0.16), costs(&[1, 1, 1, 1], 2.0, 0.17)];
 
-/// The same for a similarity with known vertical.
-pub const UPRIGHT_SIMILARITY: [&[usize]; 2] = [&[2, 1, 1, 1], &[1, 1, 1, 1, 1]];
+/// Minimal samples of a similarity with known vertical.
+pub const UPRIGHT_SIMILARITY: [Configuration; 2] =
+    [costs(&[2, 1, 1, 1], 1.526, 0.23), costs(&[1, 1, 1, 1, 1], 1.565, 0.27)];
+
+impl Sought {
+    /// The configurations that can be solved, with their costs.
+    pub fn configurations(&self) -> &'static [Configuration] {
+        match self {
+            Sought::Rigid => &RIGID,
+            Sought::Similarity => &SIMILARITY,
+            Sought::UprightRigid(_) => &UPRIGHT_RIGID,
+            Sought::UprightSimilarity(_) => &UPRIGHT_SIMILARITY,
+        }
+    }
+}
 
 /// All poses of a sample whose rows are grouped by plane: `points_per_plane` counts them, largest first, so that (3,2,1) is
 /// `&[3, 2, 1]` with six rows. Takes the fastest solver of the table in `solvers`. A sample that none serves (wrong

@@ -20,6 +20,7 @@
 //! Degenerate  refused with the reason (`Degeneracy`); nothing that leaves here is NaN
 //! Scaling     units from 1e-12 to 1e12, coordinates to 1e7 times the spread (golden/hard.json)
 //! Source      mathematics.md sections 2, 10, 11, 12
+//! Cost        about a millisecond: it is made for single problems, not for loops; it allocates
 //! Tests       tests/solver_problems.rs; tools/score_solve.py over golden/*.json
 //! ```
 

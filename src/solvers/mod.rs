@@ -35,6 +35,7 @@ mod elimination;
 mod family;
 mod frame;
 mod general;
+mod linear;
 mod normalised;
 mod polish;
 mod polynomial;
@@ -52,8 +53,9 @@ mod two_triples;
 mod upright;
 
 pub use degeneracy::{Degeneracy, NOT_ISOLATED, WEAK, condition_at};
-pub use family::{RIGID, SIMILARITY, Sought, UPRIGHT_RIGID, UPRIGHT_SIMILARITY, solve_minimal};
+pub use family::{Configuration, RIGID, SIMILARITY, Sought, UPRIGHT_RIGID, UPRIGHT_SIMILARITY, solve_minimal};
 pub use general::{Solution, refine, solve};
+pub use linear::{LinearFit, linear_least_squares};
 pub use poses::{MOST_POSES, Poses};
 pub use quadrics::{se3_6pt, sim3_7pt};
 pub use row::Row;

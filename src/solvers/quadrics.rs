@@ -28,13 +28,14 @@
 //! Scaling     equivariant in both frames; offsets should be taken about a near origin
 //! Source      Kukelova, Heller, Fitzgibbon, "Efficient intersection of three quadrics and applications in computer
 //!             vision" (CVPR 2016); homogeneous form, choice of charts and polish: mathematics.md sections 3, 6, 7
+//! Cost        2.4 us rigid, 3.2 us similarity (example table1, shared 2-core EPYC, 2026-11-22); worst residual of 100,000
+//!             1.2e-15 of the scene
 //! Tests       below; tests/solver_accuracy.rs; golden/*.json
 //! ```
 
-use super::elimination::eliminate;
+use super::elimination::{back_substitute, diagonal_holds, eliminate};
 use super::polynomial::real_roots;
 use super::quaternion::{MONOMIALS, Quaternion, form, monomials, product, rotation, value};
-use super::upright::{back_substitute, diagonal_holds};
 use super::{MOST_POSES, Poses, RANK_TOLERANCE, Row};
 use crate::geometry::{Rotation3, Similarity, Vector3};
 

@@ -1,0 +1,112 @@
+//! Linear least squares: the method that the paper compares with.
+//!
+//! ```text
+//! Problem     rigid pose from many points on planes, without any trigonometry
+//! Given       12 or more rows on four or more planes
+//! Unknowns    the twelve numbers of x = A p + t, as if A were any matrix
+//! Equations   n . (A p + t) + d = 0
+//! Method      1. Least squares for A and t by singular values; freedoms that the rows do not hold stay zero.
+//!             2. The rotation nearest to A. 3. t again, for that rotation.
+//! Solutions   1
+//! Degenerate  three planes: points of one plane are coplanar, so a plane contributes rank 3 at most and three planes
+//!             9 of 12, however many points. The answer is then arbitrary: `rank` tells
+//! Scaling     points about their centroid in units of their spread
+//! Source      Ramalingam et al. (ECCV 2010), section 5; mathematics.md section 11
+//! Cost        not measured; it is a baseline
+//! Tests       below; examples/figure4.rs
+//! ```
+
+use super::Row;
+use super::singular::Singular;
+use crate::geometry::{Matrix3, Rotation3, Similarity, Vector3};
+
+/// Singular values below this, relative to the largest, count as zero.
+const NO_INFORMATION: f64 = 1e-10;
+
+/// A rigid pose, and how many of the twelve numbers the rows determine.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearFit {
+    pub object_from_sensor: Similarity,
+    pub rank: usize,
+}
+
+/// `None` for fewer rows than unknowns, and where A has no nearest rotation.
+pub fn linear_least_squares(rows: &[Row]) -> Option<LinearFit> {
+    if rows.len() < 12 {
+        return None;
+    }
+    let count = rows.len() as f64;
+    let centroid = rows.iter().map(|row| row.point).sum::<Vector3<f64>>() / count;
+    let spread_sq = rows.iter().map(|row| (row.point - centroid).norm_squared()).sum::<f64>() / count;
+    if !(spread_sq > 0.0) {
+        return None;
+    }
+    let spread = spread_sq.sqrt();
+    let equations: Vec<[f64; 12]> = rows
+        .iter()
+        .map(|row| {
+            let (n, p) = (row.normal, (row.point - centroid) / spread);
+            std::array::from_fn(|k| if k < 9 { n[k / 3] * p[k % 3] } else { n[k - 9] })
+        })
+        .collect();
+    let right: Vec<f64> = rows.iter().map(|row| -row.offset).collect();
+    let singular = Singular::of(&equations);
+    let rank = singular.sorted().iter().filter(|&&s| s > NO_INFORMATION * singular.largest()).count();
+    let x = singular.least_squares(&right, NO_INFORMATION);
+    let rotation = nearest_rotation(&Matrix3::from_fn(|i, j| x[3 * i + j] / spread))?;
+    let normals: Vec<[f64; 3]> = rows.iter().map(|row| row.normal.into()).collect();
+    let heights: Vec<f64> =
+        rows.iter().map(|row| -row.offset - row.normal.dot(&(rotation * (row.point - centroid)))).collect();
+    let image = Vector3::from(Singular::of(&normals).least_squares(&heights, NO_INFORMATION));
+    let rotation = Rotation3::from_matrix_unchecked(rotation);
+    Some(LinearFit { object_from_sensor: Similarity::about(&centroid.into(), &image.into(), 1.0, rotation), rank })
+}
+
+/// U diag(1, 1, det U V^T) V^T for A = U S V^T.
+fn nearest_rotation(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let svd = matrix.svd(true, true);
+    let (mut u, v_t) = (svd.u?, svd.v_t?);
+    if (u * v_t).determinant() < 0.0 {
+        // nalgebra sorts the singular values, so the last column belongs to the smallest.
+        u.column_mut(2).neg_mut();
+    }
+    let rotation = u * v_t;
+    rotation.iter().all(|v| v.is_finite()).then_some(rotation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scene::{Chance, angle_between_rad, sample};
+    use super::super::{Sought, refine};
+    use super::*;
+
+    #[test]
+    fn twelve_points_on_four_planes_give_the_pose_and_three_planes_give_rank_nine() {
+        let mut chance = Chance::new(4);
+        let case = sample(&mut chance, &Sought::Rigid, &[3, 3, 3, 3]);
+        let fit = linear_least_squares(&case.rows).unwrap();
+        assert_eq!(fit.rank, 12);
+        assert!(angle_between_rad(&fit.object_from_sensor.rotation, &case.truth.rotation) < 1e-9);
+        for points in [4, 7] {
+            let case = sample(&mut chance, &Sought::Rigid, &[points; 3]);
+            assert_eq!(linear_least_squares(&case.rows).unwrap().rank, 9);
+        }
+    }
+
+    #[test]
+    fn refining_a_noisy_linear_pose_lowers_the_residual() {
+        let mut chance = Chance::new(5);
+        let mut case = sample(&mut chance, &Sought::Rigid, &[5, 5, 5, 5]);
+        for row in &mut case.rows {
+            row.point += chance.normal_vector();
+        }
+        let sum = |pose: &Similarity| -> f64 {
+            case.rows.iter().map(|r| (r.normal.dot(&pose.apply(&r.point.into()).coords) + r.offset).powi(2)).sum()
+        };
+        let linear = linear_least_squares(&case.rows).unwrap().object_from_sensor;
+        let refined = refine(&Sought::Rigid, &case.rows, &linear).unwrap();
+        assert!(sum(&refined) < sum(&linear));
+        let again = refine(&Sought::Rigid, &case.rows, &refined).unwrap();
+        assert!((again.rotation.matrix() - refined.rotation.matrix()).norm() < 1e-8);
+    }
+}

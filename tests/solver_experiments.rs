@@ -1,0 +1,75 @@
+//! The examples `figure4` and `contact_sensor`, asserted on smaller runs, and the polish of the best of ten samples.
+
+#[path = "../examples/contact_sensor.rs"]
+mod contact_sensor;
+#[path = "../examples/figure4.rs"]
+mod figure4;
+
+use cityweld::solvers::scene::Chance;
+use cityweld::solvers::{Sought, refine};
+use figure4::{METHODS, Method, NOISE, Scene, mean_errors};
+
+fn errors(name: &str, noise: f64) -> (f64, f64) {
+    let (_, method, points) = *METHODS.iter().find(|method| method.0 == name).unwrap();
+    mean_errors(method, points, noise, 12)
+}
+
+#[test]
+fn noise_moves_the_best_of_a_hundred_samples_as_little_as_measured() {
+    // Means of 100 trials at 0.5 % (mathematics.md 13.2); 12 trials scatter by about 15 %.
+    for (name, degrees) in [("(3,2,1)", 0.64), ("(2,2,2)", 0.55), ("(1,1,1,1,1,1)", 0.52), ("(3,3,3)", 0.47)] {
+        let (rotation, position) = errors(name, NOISE[0]);
+        assert!((0.6 * degrees..1.5 * degrees).contains(&rotation), "{name}: {rotation} degrees");
+        assert!(position < 0.8, "{name}: {position}");
+    }
+    assert!(errors("linear, 12 points, 3 planes", NOISE[0]).0 > 5.0, "three planes cannot be solved linearly");
+}
+
+#[test]
+fn polishing_beats_the_minimal_and_the_linear_pose() {
+    let (minimal, polished) = (errors("(3,3,3)", NOISE[2]).0, errors("(3,3,3) polished", NOISE[2]).0);
+    assert!(polished < minimal, "{polished} {minimal}");
+    let (linear, polished) =
+        (errors("linear, 12 points, 4 planes", NOISE[2]).0, errors("linear 12, 4 planes, polished", NOISE[2]).0);
+    assert!(polished < linear, "{polished} {linear}");
+}
+
+/// Runs in which the best of 10 samples, polished on all points, ends in another minimum than the polished truth.
+fn other_minima(runs: usize) -> usize {
+    let mut chance = Chance::new(6);
+    let mut other = 0;
+    for run in 0..runs {
+        let scene = Scene::new(&mut chance, NOISE[run % NOISE.len()]);
+        let best = scene.best_of(&mut chance, Method::Minimal, &[2, 1, 1, 1, 1], 10);
+        let polish = |pose: &_| refine(&Sought::Rigid, &scene.rows, pose).unwrap();
+        let (from_sample, from_truth) = (best.as_ref().map(polish), polish(&scene.truth));
+        let apart = from_sample.map(|pose| (pose.rotation.matrix() - from_truth.rotation.matrix()).norm());
+        other += usize::from(!apart.is_some_and(|apart| apart < 1e-6));
+    }
+    other
+}
+
+#[test]
+fn the_best_of_ten_samples_polishes_to_the_minimum_of_the_truth() {
+    assert_eq!(other_minima(50), 0);
+}
+
+#[test]
+#[ignore = "a minute of computing"]
+fn the_best_of_ten_samples_polishes_to_the_minimum_of_the_truth_a_thousand_times() {
+    let other = other_minima(1000);
+    println!("{other} of 1000 runs ended elsewhere");
+    assert!(other <= 1, "{other} of 1000");
+}
+
+#[test]
+fn contacts_on_four_faces_of_an_icosahedron_give_its_pose() {
+    let mut errors_deg = Vec::new();
+    for seed in 0..10 {
+        let outcome = contact_sensor::run(seed).expect("every seed's contacts can be sorted");
+        assert_eq!((outcome.clusters, outcome.clique), (4, 4), "seed {seed}");
+        assert!(outcome.error_mm < 1.0 && outcome.rms_mm < 1.5 * contact_sensor::NOISE_MM, "seed {seed}");
+        errors_deg.push(outcome.error_deg);
+    }
+    assert!(errors_deg.iter().all(|&e| e < 1.0), "{errors_deg:?}");
+}

@@ -41,7 +41,14 @@ pub enum Command {
 #[derive(clap::Args, Clone, Debug)]
 pub struct Common {
     /// Seed of the random draws; same seed, same answer, whatever the number of threads
-    #[arg(long, global = true, value_name = "N", default_value_t = 0, allow_hyphen_values = true, help_heading = "Common options")]
+    #[arg(
+        long,
+        global = true,
+        value_name = "N",
+        default_value_t = 0,
+        allow_hyphen_values = true,
+        help_heading = "Common options"
+    )]
     pub seed: u64,
     /// Threads to work with, at least 1 [default: all cores]
     #[arg(long, global = true, value_name = "N", allow_hyphen_values = true, help_heading = "Common options")]

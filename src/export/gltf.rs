@@ -326,7 +326,7 @@ mod tests {
                 name: "a/b.jpg".into(),
                 cam_from_sfm_rotation: Rotation3::identity(),
                 cam_from_sfm_translation: Vector3::new(0.0, 0.0, 5.0),
-                observations: Vec::new(),
+                ..Default::default()
             }],
             points: vec![Point3::new(1.0, 2.0, 3.0), Point3::new(1e300, 0.0, 0.0)],
             ..Default::default()

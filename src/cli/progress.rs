@@ -50,6 +50,5 @@ fn measured() -> ProgressStyle {
 }
 
 fn unmeasured() -> ProgressStyle {
-    ProgressStyle::with_template("{spinner} {msg:26} {elapsed}")
-        .unwrap_or_else(|_| ProgressStyle::default_spinner())
+    ProgressStyle::with_template("{spinner} {msg:26} {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner())
 }

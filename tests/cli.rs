@@ -343,6 +343,16 @@ fn export_writes_an_edited_alignment_in_the_formats_asked_for() {
 }
 
 #[test]
+fn solve_answers_on_standard_output() {
+    let room = room();
+    refused(&room, &["solve", "none.json"], &["cannot read the problem", "none.json"]);
+    std::fs::write(room.path().join("problem.json"), "{").unwrap();
+    let output = cityweld(&room, &["solve", "problem.json"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(serde_json::from_str::<serde_json::Value>(&stdout(&output)).is_ok(), "{}", stdout(&output));
+}
+
+#[test]
 fn says_what_it_is() {
     let room = room();
     let version = cityweld(&room, &["--version"]);

@@ -15,7 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robust", &["geometry", "solvers"]),
     ("planes", &["geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["geometry", "city", "planes", "solvers", "robust"]),
-    ("verdict", &["geometry", "robust", "planes", "correspondence"]),
+    ("verdict", &["geometry", "robust"]),
     ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict"]),
     (
         "align",

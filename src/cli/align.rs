@@ -13,8 +13,7 @@ use super::{Outcome, Session, summary};
 
 pub fn run(args: &AlignArgs, session: &Session) -> Result<Outcome> {
     let plan = AlignPlan::new(args, session.common.seed)?;
-    let output = Output::begin(&plan.output, OutputKind::Folder, session.common.force)?;
-    session.interrupt.guard(&output);
+    let output = session.begin(&plan.output, OutputKind::Folder)?;
     carry_out(&plan, output, session)
 }
 

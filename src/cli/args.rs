@@ -91,7 +91,7 @@ pub struct AlignArgs {
     /// Coarse place of the reconstruction, JSON (see below)
     #[arg(long, value_name = "FILE")]
     pub start: Option<PathBuf>,
-    /// Search without a start around a place of the city frame: X,Y[,Z],RADIUS in metres
+    /// Search around a place of the city frame, X,Y[,Z],RADIUS in metres (not built yet: give --start)
     #[arg(long, value_name = "X,Y[,Z],RADIUS", allow_hyphen_values = true)]
     pub near: Option<Near>,
     /// Further meshes in the same frame as CITY, such as ground; may be given several times

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use cityweld::export::{Output, OutputKind};
+use cityweld::export::OutputKind;
 
 use super::align::carry_out;
 use super::args::{AlignArgs, CityUpArg, DemoArgs, UpArg};
@@ -64,8 +64,7 @@ const SAMPLE: &[SampleFile] = sample![
 
 pub fn run(args: &DemoArgs, session: &Session) -> Result<Outcome> {
     keeps_inputs(&args.output, &[])?;
-    let output = Output::begin(&args.output, OutputKind::Folder, session.common.force)?;
-    session.interrupt.guard(&output);
+    let output = session.begin(&args.output, OutputKind::Folder)?;
     let sample = output.path().join(SAMPLE_FOLDER);
     unpack(&sample)?;
     let plan = AlignPlan { output: args.output.clone(), ..AlignPlan::new(&align_args(&sample), session.common.seed)? };

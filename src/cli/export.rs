@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use cityweld::city::read_city;
-use cityweld::export::{Formats, Output, OutputKind, write_placed};
+use cityweld::export::{Formats, OutputKind, write_placed};
 use cityweld::format::{StoredAlignment, read_alignment};
 use cityweld::reconstruction::read_reconstruction;
 
@@ -17,8 +17,7 @@ pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     inputs.extend(&args.terrain);
     keeps_inputs(&args.output, &inputs)?;
     let stored = read_alignment(&args.alignment)?;
-    let output = Output::begin(&args.output, OutputKind::Folder, session.common.force)?;
-    session.interrupt.guard(&output);
+    let output = session.begin(&args.output, OutputKind::Folder)?;
     let voice = &session.voice;
 
     voice.bar.show("reading the city", 0, 0);

@@ -1,9 +1,10 @@
 //! Ctrl-C: what is half made goes away, then the program ends with the status that shells expect.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cityweld::export::{Discard, Output};
+use cityweld::export::{Discard, Output, OutputError, OutputKind};
 
 /// 128 + SIGINT, as shells have it.
 const EXIT_INTERRUPTED: i32 = 130;
@@ -31,9 +32,13 @@ impl Interrupt {
         interrupt
     }
 
-    /// Has `output` removed if an interruption comes before it is whole.
-    pub fn guard(&self, output: &Output) {
-        self.under_way.lock().unwrap_or_else(PoisonError::into_inner).push(output.discard());
+    /// Begins output that is removed if an interruption comes before it is whole. The list is held meanwhile, so that
+    /// an interruption finds the folder in it or comes before there is one.
+    pub fn begin(&self, target: &Path, kind: OutputKind, replace: bool) -> Result<Output, OutputError> {
+        let mut under_way = self.under_way.lock().unwrap_or_else(PoisonError::into_inner);
+        let output = Output::begin(target, kind, replace)?;
+        under_way.push(output.discard());
+        Ok(output)
     }
 
     /// Lets an interruption under way end the program: the errors that it caused are not told.

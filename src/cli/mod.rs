@@ -12,9 +12,11 @@ mod progress;
 mod solve;
 mod summary;
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use cityweld::export::{Output, OutputError, OutputKind};
 
 pub use args::Args;
 use args::Command;
@@ -23,6 +25,9 @@ use print::Voice;
 
 /// Bad input or use; nothing was written.
 const EXIT_BAD_INPUT: u8 = 2;
+
+/// All work is done by threads of the pool; they have as much room as a main thread usually has.
+const STACK_BYTES: usize = 8 << 20;
 
 /// How a command ended that was carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +45,13 @@ struct Session {
     common: args::Common,
     voice: Voice,
     interrupt: Interrupt,
+}
+
+impl Session {
+    /// Begins the output of a command; `--force` and interruptions are seen to.
+    fn begin(&self, target: &Path, kind: OutputKind) -> Result<Output, OutputError> {
+        self.interrupt.begin(target, kind, self.common.force)
+    }
 }
 
 /// Carries out a command line.
@@ -78,6 +90,7 @@ fn in_pool<T: Send>(session: &Session, work: impl FnOnce() -> anyhow::Result<T> 
     let threads = session.common.threads.map_or(0, std::num::NonZeroUsize::get);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
+        .stack_size(STACK_BYTES)
         .build()
         .with_context(|| format!("cannot start {threads} threads; give fewer with --threads"))?;
     pool.install(work)

@@ -57,7 +57,6 @@ fn begin(path: &Path, args: &PlanesArgs, session: &Session) -> Result<(Output, F
     };
     let inputs: Vec<_> = std::iter::once(&args.city).chain(&args.terrain).collect();
     keeps_inputs(path, &inputs)?;
-    let output = Output::begin(path, OutputKind::File, session.common.force)?;
-    session.interrupt.guard(&output);
+    let output = session.begin(path, OutputKind::File)?;
     Ok((output, form))
 }

@@ -45,11 +45,10 @@ impl Bar {
 }
 
 fn measured() -> ProgressStyle {
-    let template = "{spinner} {msg:24} [{bar:30}] {pos}/{len} {eta_precise} left";
+    let template = "{spinner} {msg:26} [{bar:20}] {pos}/{len} {eta} left";
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ")
 }
 
 fn unmeasured() -> ProgressStyle {
-    ProgressStyle::with_template("{spinner} {msg:24} {elapsed_precise}")
-        .unwrap_or_else(|_| ProgressStyle::default_spinner())
+    ProgressStyle::with_template("{spinner} {msg:26} {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner())
 }

@@ -1,7 +1,7 @@
 //! `cityweld solve PROBLEM.json`: all poses of one point-to-plane problem.
 
 use cityweld::solvers::problem::{Refusal, answer_json, solve_json};
-use std::io::Read;
+use std::io::{Read, Write};
 
 /// Solves the problem in a file (`-`: standard input) and prints the answer; returns the exit status: 0 an answer, 1
 /// degenerate, 2 ill-formed or unreadable.
@@ -9,12 +9,13 @@ pub fn run(path: &str) -> u8 {
     let text = match read(path) {
         Ok(text) => text,
         Err(error) => {
-            eprintln!("cannot read {path}: {error}");
+            let _ = writeln!(std::io::stderr(), "error: cannot read the problem: {error}: {path}");
             return 2;
         }
     };
     let answer = solve_json(&text);
-    println!("{}", answer_json(&answer));
+    // A reader that has gone away is no error.
+    let _ = writeln!(std::io::stdout(), "{}", answer_json(&answer));
     match answer {
         Ok(_) => 0,
         Err(Refusal::Degenerate(_)) => 1,

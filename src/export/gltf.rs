@@ -143,8 +143,8 @@ fn city_node(glb: &mut Glb, city: &CityModel, extent: Option<&Extent>) -> (Optio
 fn facets_by_object<'a>(city: &'a CityModel, near: Option<&Extent>) -> BTreeMap<usize, Vec<(usize, &'a Facet)>> {
     let mut objects: BTreeMap<usize, Vec<(usize, &Facet)>> = BTreeMap::new();
     for (index, facet) in city.facets.iter().enumerate() {
-        let corner = facet.outline.first().map(|corner| &city.vertices[*corner as usize]);
-        if near.is_none_or(|extent| corner.is_some_and(|corner| extent.is_near(corner))) {
+        let corners = facet.outline.iter().map(|corner| &city.vertices[*corner as usize]);
+        if near.is_none_or(|extent| extent.is_near(corners)) {
             objects.entry(facet.object.0 as usize).or_default().push((index, facet));
         }
     }
@@ -272,9 +272,12 @@ impl Extent {
         (self.high - self.low).norm()
     }
 
-    /// Within the margin, seen from above.
-    fn is_near(&self, point: &Point3<f64>) -> bool {
-        (0..2).all(|axis| (self.low[axis] - CITY_MARGIN_M..=self.high[axis] + CITY_MARGIN_M).contains(&point[axis]))
+    /// True where a polygon's box comes within the margin, seen from above: a large floor may have all corners far off.
+    fn is_near<'a>(&self, corners: impl Iterator<Item = &'a Point3<f64>> + Clone) -> bool {
+        (0..2).all(|axis| {
+            let (low, high) = (self.low[axis] - CITY_MARGIN_M, self.high[axis] + CITY_MARGIN_M);
+            corners.clone().any(|corner| corner[axis] <= high) && corners.clone().any(|corner| corner[axis] >= low)
+        })
     }
 }
 
@@ -326,7 +329,7 @@ mod tests {
                 name: "a/b.jpg".into(),
                 cam_from_sfm_rotation: Rotation3::identity(),
                 cam_from_sfm_translation: Vector3::new(0.0, 0.0, 5.0),
-                observations: Vec::new(),
+                ..Default::default()
             }],
             points: vec![Point3::new(1.0, 2.0, 3.0), Point3::new(1e300, 0.0, 0.0)],
             ..Default::default()
@@ -380,6 +383,20 @@ mod tests {
             mesh.primitives().next().unwrap().material().double_sided()
         };
         assert!(!double_sided("house") && double_sided("ground"));
+    }
+
+    #[test]
+    fn leaves_out_of_a_large_city_what_is_far_from_the_scene() {
+        let city = city();
+        let objects_around = |x: f64| {
+            let place = Vector3::new(x, 0.0, 0.0);
+            let extent = Extent { low: place, high: place };
+            facets_by_object(&city, Some(&extent)).keys().copied().collect::<Vec<_>>()
+        };
+        // The house reaches from 0 to 4 m, the ground from 0 to 9 m.
+        assert_eq!(objects_around(0.0), [0, 1]);
+        assert_eq!(objects_around(CITY_MARGIN_M + 5.0), [1]);
+        assert!(objects_around(CITY_MARGIN_M + 10.0).is_empty());
     }
 
     #[test]

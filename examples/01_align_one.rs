@@ -1,0 +1,46 @@
+//! Sets one reconstruction into a city: read, align, look at the verdict, write.
+//!
+//!     cargo run --release --example 01_align_one
+
+use std::error::Error;
+use std::path::Path;
+
+use cityweld::city::{CityOptions, read_city};
+use cityweld::export::{CityCounts, InputSummary, SfmCounts, write_alignment};
+use cityweld::format::read_start;
+use cityweld::imagery::{SlicOptions, SuperpixelSource, lift_superpixels};
+use cityweld::reconstruction::read_reconstruction;
+use cityweld::{AlignOptions, Up, align};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+
+    // What is known: the city, the reconstruction, which pixels belong together, and roughly where all of it stands.
+    let city = read_city(&sample.join("city.obj"), &[], &CityOptions::default())?;
+    let sfm = read_reconstruction(&sample.join("sfm"))?;
+    let labels = SuperpixelSource::Labels(sample.join("labels"));
+    let superpixels = lift_superpixels(&sfm, &labels, &SlicOptions::default(), &|_, _| ())?;
+    let start = read_start(&sample.join("start.json"))?;
+
+    let options = AlignOptions { start, fixed_scale: None, up: Up::Auto, seed: 0 };
+    let alignment = align(&city, &sfm, Some(&superpixels), &options, &|_, _, _| ());
+    println!("{}: {}", alignment.verdict.word(), alignment.reason);
+
+    // The similarity maps the reconstruction to absolute city coordinates.
+    if let (Some(city_from_sfm), Some(point)) = (&alignment.best, sfm.points.first()) {
+        println!(
+            "scale {:.4} m per unit; the first point stands at {:.3}",
+            city_from_sfm.scale,
+            city_from_sfm.apply(point)
+        );
+    }
+
+    let out = tempfile::tempdir()?;
+    let input = InputSummary {
+        city: CityCounts::of(&city, vec!["city.obj".into()]),
+        sfm: SfmCounts::of(&sfm, "sfm".into(), Some(superpixels.superpixels.len())),
+    };
+    let files = write_alignment(out.path(), &alignment, &input, &city, &sfm)?;
+    println!("written: {}", files.join(", "));
+    Ok(())
+}

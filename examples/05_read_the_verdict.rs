@@ -1,0 +1,53 @@
+//! What a program does with each verdict, shown on the sample: with all of the city, and with its walls alone.
+//!
+//!     cargo run --release --example 05_read_the_verdict
+
+use std::error::Error;
+use std::path::Path;
+
+use cityweld::city::{CityModel, CityOptions, read_city};
+use cityweld::format::read_start;
+use cityweld::reconstruction::read_reconstruction;
+use cityweld::verdict::{Alignment, Verdict};
+use cityweld::{AlignOptions, Up, align};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+    let city = read_city(&sample.join("city.obj"), &[], &CityOptions::default())?;
+    let sfm = read_reconstruction(&sample.join("sfm"))?;
+    let start = read_start(&sample.join("start.json"))?;
+    let options = AlignOptions { start, fixed_scale: None, up: Up::Auto, seed: 0 };
+
+    for (name, city) in [("the whole city", city.clone()), ("its walls alone", walls_of(city))] {
+        println!("{name}:");
+        tell(&align(&city, &sfm, None, &options, &|_, _, _| ()));
+    }
+    Ok(())
+}
+
+fn tell(alignment: &Alignment) {
+    println!("  {}: {}", alignment.verdict.word(), alignment.reason);
+    match (alignment.verdict, &alignment.best) {
+        // Only this one is to be built upon; its sigmas say how far.
+        (Verdict::Aligned, Some(pose)) => println!("  use it: scale {:.4}", pose.scale),
+        // Sound but for some freedoms: good where those do not matter, or where something else fixes them.
+        (Verdict::Undetermined, Some(_)) => {
+            for freedom in alignment.freedoms.iter().filter(|freedom| !freedom.determined) {
+                println!("  open: {}, sigma {:.2} {}", freedom.name, freedom.sigma, freedom.unit);
+            }
+        }
+        // One of these is right; a better start or a person decides.
+        (Verdict::Ambiguous, Some(_)) => {
+            for other in &alignment.alternatives {
+                println!("  or: {} (weight {:.2})", other.differs, other.weight);
+            }
+        }
+        _ => println!("  nothing to use: look at the start and at the model"),
+    }
+}
+
+/// Roofs and floors taken away: nothing is left that holds the height.
+fn walls_of(mut city: CityModel) -> CityModel {
+    city.facets.retain(|facet| facet.plane.normal.z.abs() < 0.05);
+    city
+}

@@ -100,9 +100,9 @@ pub fn contest(scene: &Scene, scale: Option<f64>, seed: u64, progress: &(dyn Fn(
         contenders = distinct(contenders, scene, stage.keep);
     }
     // Once more, with a gate as narrow as the residuals allow: what lies beyond is somebody else's facet.
-    let all: Vec<u32> = (0..scene.votes.probes.len() as u32).collect();
+    let (firm, all) = (probes(scene.votes.firm), probes(scene.votes.probes.len()));
     for c in &mut contenders {
-        let sharp = refiner.sharpen(&all, &c.refined.city_from_level, scene.unit_m);
+        let sharp = refiner.sharpen(&firm, &c.refined.city_from_level, scene.unit_m);
         c.refined = refiner.settle(&all, sharp, scene.unit_m, SETTLING_UNITS * scene.unit_m);
     }
     contest.contenders = contenders;
@@ -118,12 +118,15 @@ pub fn refiner<'a>(scene: &'a Scene, scorer: &'a Scorer<'a>, scale_is_fixed: boo
 
 fn stages(scene: &Scene) -> [Stage; 3] {
     let votes = &scene.votes;
-    let all = (0..votes.probes.len() as u32).collect();
     [
         Stage { panel: votes.panel(400), gates: &[5.0, 5.0, 4.0, 3.3, 2.7], ranking_gate: 2.3, sight: false, keep: 16 },
         Stage { panel: votes.panel(1500), gates: &[2.7, 2.3, 2.0, 1.7, 1.7], ranking_gate: 1.3, sight: true, keep: 6 },
-        Stage { panel: all, gates: &[1.7, 1.3, 1.0, 1.0], ranking_gate: 1.0, sight: true, keep: 6 },
+        Stage { panel: probes(votes.firm), gates: &[1.7, 1.3, 1.0, 1.0], ranking_gate: 1.0, sight: true, keep: 6 },
     ]
+}
+
+fn probes(count: usize) -> Vec<u32> {
+    (0..count as u32).collect()
 }
 
 fn improved(scene: &Scene, refiner: &Refiner, stage: &Stage, contender: &Contender) -> Contender {
@@ -143,7 +146,7 @@ fn improved(scene: &Scene, refiner: &Refiner, stage: &Stage, contender: &Contend
 }
 
 /// A slide by the votes ends within this many units of the right place.
-const SETTLING_UNITS: f64 = 2.0;
+const SETTLING_UNITS: f64 = 4.0;
 
 /// Voters of the last ranking; a larger panel changes the third digit.
 const MOST_VOTERS: usize = 3000;

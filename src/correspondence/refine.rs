@@ -97,13 +97,15 @@ impl Refiner<'_> {
         refined
     }
 
-    /// Slides `refined` along what it leaves loose to where most planes find points, as far as `reach_m`, and sharpens again.
+    /// Slides `refined`, made without loose points, along what it leaves loose to where most planes find points, as far as `reach_m`, and sharpens with
+    /// all of `panel`.
     ///
     /// The few points of a grazed roof that alone hold a height count for nothing among the votes of the walls; but by the
     /// root of its points every plane has a say, and at the right height several find theirs at once.
     pub fn settle(&self, panel: &[u32], refined: Refined, gate_m: f64, reach_m: f64) -> Refined {
         let spectrum = refined.equations.spectrum();
-        let step_m = LOOSE_GATE_SIGMAS * self.errors.point_sigma_m;
+        // A finer step than the gate of a loose point is wide: none may fall between.
+        let step_m = self.errors.point_sigma_m;
         let steps = (reach_m / step_m).ceil() as i32;
         let support = |panel: &[u32], pose: &Similarity| -> f64 {
             let rows = self.probes_on_planes(panel, pose, gate_m);
@@ -111,7 +113,9 @@ impl Refiner<'_> {
         };
         let start = refined.city_from_level;
         let mut best = start;
-        for k in (0..7).filter(|&k| spectrum.sigmas_m[k] > LOOSE_M) {
+        let mut open: Vec<usize> = (0..7).filter(|&k| spectrum.sigmas_m[k] > HELD_M).collect();
+        open.sort_by(|&a, &b| spectrum.sigmas_m[b].total_cmp(&spectrum.sigmas_m[a]));
+        for k in open {
             let direction = spectrum.directions.column(k).into_owned();
             let free = self.without_bystanders(panel, &refined.chart, &best, &direction, gate_m);
             let from = best;
@@ -124,7 +128,7 @@ impl Refiner<'_> {
                 }
             }
         }
-        if best == start { refined } else { self.sharpen(panel, &best, gate_m) }
+        self.sharpen(panel, &best, gate_m)
     }
 
     /// The panel without the loose points on planes that a motion along `direction` does not leave: they are explained already.
@@ -230,8 +234,6 @@ const SHARPENING_STEPS: usize = 5;
 
 /// A plane whose distance changes by less than this share of a motion is not left by it.
 const BYSTANDER: f64 = 0.3;
-/// Directions held worse than this may be settled, metres.
-const LOOSE_M: f64 = 0.25;
 
 /// A cloud smaller than this has no turn or scale to speak of.
 const SMALLEST_RADIUS_M: f64 = 1e-3;

@@ -6,7 +6,7 @@ use super::facet::Shaper;
 use super::join::join_vertices;
 use super::origin::common_origin;
 use super::source::Source;
-use super::validate::validate;
+use super::validate::{check_extents, validate};
 use super::warning::{CityDefect, Warnings};
 use super::{CityError, CityModel, CityRole, CitySource, Facet, ObjectId};
 use crate::geometry::Point3;
@@ -25,6 +25,7 @@ pub(super) fn build(sources: Vec<Source>) -> Result<CityModel, CityError> {
     for (source, vertex_of) in sources.iter().zip(&vertex_of) {
         add_source(&mut model, &mut warnings, source, vertex_of)?;
     }
+    check_extents(&model, &mut warnings);
     model.warnings = warnings.into_list();
     Ok(model)
 }

@@ -13,18 +13,24 @@ impl CityModel {
         let mut kept = CityModel { origin: self.origin, ..CityModel::default() };
         let mut vertex_of = vec![None; self.vertices.len()];
         let mut object_of = vec![None; self.objects.len()];
-        for source in &self.sources {
-            let (first_facet, first_object) = (kept.facets.len() as u32, kept.objects.len() as u32);
-            for id in source.facets.clone().filter(|&id| keep(FacetId(id))) {
-                let facet = &self.facets[id as usize];
+        // What is kept before each facet, to count the files' shares anew.
+        let mut facets_before = vec![0];
+        let mut objects_before = vec![0];
+        for (id, facet) in self.facets_with_ids() {
+            if keep(id) {
                 let object = *object_of[facet.object.0 as usize].get_or_insert_with(|| {
-                    kept.objects.push(self.objects[facet.object.0 as usize].clone());
+                    kept.objects.push(self.object_name(facet.object).to_owned());
                     kept.objects.len() as u32 - 1
                 });
                 self.copy_facet(facet, ObjectId(object), &mut kept, &mut vertex_of);
             }
-            let facets = first_facet..kept.facets.len() as u32;
-            let objects = first_object..kept.objects.len() as u32;
+            facets_before.push(kept.facets.len() as u32);
+            objects_before.push(kept.objects.len() as u32);
+        }
+        for source in &self.sources {
+            let (start, end) = (source.facets.start as usize, source.facets.end as usize);
+            let facets = facets_before[start]..facets_before[end];
+            let objects = objects_before[start]..objects_before[end];
             kept.sources.push(CitySource { facets, objects, ..source.clone() });
         }
         kept

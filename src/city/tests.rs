@@ -217,3 +217,26 @@ fn what_is_written_as_obj_reads_back() {
     assert_eq!((&again.objects, &again.triangles), (&model.objects, &model.triangles));
     assert_eq!((&again.vertices, again.origin), (&model.vertices, model.origin));
 }
+
+#[test]
+fn a_subset_of_a_model_made_by_hand_needs_no_files() {
+    let made = CityModel { sources: Vec::new(), ..model(BOX) };
+    assert_eq!(made.subset(|facet| facet.0 < 2).facets.len(), 2);
+}
+
+#[test]
+fn other_units_and_frames_are_noticed() {
+    let degrees = "v 4.3 52.07 10\nv 4.301 52.07 10\nv 4.301 52.071 10\nf 1 2 3\n";
+    let sentence = model(degrees).warnings.iter().map(CityWarning::to_string).last().unwrap();
+    assert!(sentence.contains("units must be metres"), "{sentence}");
+    let elsewhere = "v 51 70 0\nv 53 70 0\nv 53 73 0\nf 1 2 3\n";
+    let model = build(vec![source(CityRole::City, BOX), source(CityRole::Terrain, elsewhere)]).unwrap();
+    let sentence = model.warnings[0].to_string();
+    assert!(sentence.starts_with("1 file lies far from the city (up to 444966 m;"), "{sentence}");
+}
+
+#[test]
+fn many_copies_of_one_wall_are_counted_in_time() {
+    let text = format!("{BOX}{}", "f 1 2 6 5\n".repeat(50_000));
+    assert!(defects(&model(&text)).iter().any(|(defect, count, _)| *defect == CityDefect::Doubled && *count == 50_000));
+}

@@ -3,8 +3,11 @@
 use spade::handles::FixedUndirectedEdgeHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
-/// Rings that cross themselves are searched edge against edge; beyond this the search would take minutes.
-const CROSSING_SEARCH_LIMIT: usize = 4000;
+/// Rings that cross themselves are searched edge against edge; longer ones would take too long.
+const CROSSING_SEARCH_LIMIT: usize = 2000;
+
+/// Crossings for each corner beyond which a ring is no polygon that somebody drew.
+const CROSSINGS_PER_CORNER: usize = 2;
 
 /// The area of the triangles may differ from the ring's own by this share before the ring is taken to overlap itself.
 const AREA_SHARE: f64 = 1e-6;
@@ -112,7 +115,7 @@ fn differs(ring: &[[f64; 2]], triangles: &[[usize; 3]]) -> bool {
 
 type PointsAndEdges = (Vec<[f64; 2]>, Vec<[usize; 2]>);
 
-/// The ring with a point put in wherever two of its edges cross. `None` for rings that are too long to search.
+/// The ring with a point put in wherever two of its edges cross. `None` for rings that are too long, or too tangled.
 fn cut_at_crossings(ring: &[[f64; 2]]) -> Option<PointsAndEdges> {
     let count = ring.len();
     if count > CROSSING_SEARCH_LIMIT {
@@ -128,6 +131,9 @@ fn cut_at_crossings(ring: &[[f64; 2]]) -> Option<PointsAndEdges> {
                 cuts[second].push((along_second, points.len()));
                 points.push(point);
             }
+        }
+        if points.len() > count * (1 + CROSSINGS_PER_CORNER) {
+            return None;
         }
     }
     let mut edges = Vec::with_capacity(count + 2 * (points.len() - count));
@@ -231,6 +237,13 @@ mod tests {
         let ring = [[0.0, 0.0], [3.0, 0.0], [3.0, 4.0], [4.0, 4.0], [4.0, 3.0], [0.0, 3.0]];
         assert!((area(&ring).unwrap() - 10.0).abs() < 1e-12);
         assert!(overlaps(&ring));
+    }
+
+    #[test]
+    fn a_ball_of_wool_is_given_up_soon() {
+        let at = |step: u64| (step * 7919 % 1999) as f64;
+        let ring: Vec<[f64; 2]> = (0..1999).map(|step| [at(step), at(step * step)]).collect();
+        assert!(triangulate(&ring).is_none());
     }
 
     #[test]

@@ -3,10 +3,18 @@
 use rayon::prelude::*;
 
 use super::warning::{CityDefect, CityPlace, Warnings};
-use super::{CityModel, Facet};
+use super::{CityModel, CitySource, Facet};
+use crate::geometry::{Point3, Vector3};
 
 /// Objects looked at together by one thread.
 const OBJECTS_PER_CHUNK: usize = 64;
+
+/// Metres; a city that is smaller or larger across is in other units, or has vertices that belong elsewhere.
+const SMALLEST_CITY_M: f64 = 1.0;
+const LARGEST_CITY_M: f64 = 200_000.0;
+
+/// Metres; a further mesh may begin this far from the city, or as far as the city is large.
+const NEAR_M: f64 = 1000.0;
 
 /// An edge of one facet, from the lower vertex to the higher or back.
 type Edge = (u32, u32, bool, u32);
@@ -100,11 +108,14 @@ fn doubled(model: &CityModel, facets: std::ops::Range<u32>) -> Vec<(u32, bool)> 
     keys.par_sort_unstable();
     let mut doubled = Vec::new();
     for alike in keys.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
-        for (at, &(_, facet)) in alike.iter().enumerate().skip(1) {
+        let outline = |&(_, facet): &([u32; 4], u32)| {
             let (outline, is_reversed) = canonical(&model.facets[facet as usize]);
-            let same = alike[..at].iter().map(|&(_, earlier)| canonical(&model.facets[earlier as usize]));
-            let earlier = same.into_iter().find(|(earlier, _)| *earlier == outline);
-            doubled.extend(earlier.map(|(_, earlier_is_reversed)| (facet, earlier_is_reversed != is_reversed)));
+            (outline, facet, is_reversed)
+        };
+        let mut outlines: Vec<(Vec<u32>, u32, bool)> = alike.iter().map(outline).collect();
+        outlines.sort_unstable();
+        for same in outlines.chunk_by(|a, b| a.0 == b.0) {
+            doubled.extend(same[1..].iter().map(|(_, facet, is_reversed)| (*facet, *is_reversed != same[0].2)));
         }
     }
     doubled.retain(|(facet, _)| facets.contains(facet));
@@ -130,4 +141,37 @@ fn canonical(facet: &Facet) -> (Vec<u32>, bool) {
         turned[1..].reverse();
     }
     (turned, is_reversed)
+}
+
+/// Looks for files in other units or frames than metres about one place.
+pub(super) fn check_extents(model: &CityModel, warnings: &mut Warnings) {
+    let boxes: Vec<Option<Extent>> = model.sources.iter().map(|source| extent(model, source.facets.clone())).collect();
+    let Some(Some(city)) = boxes.first() else { return };
+    let place = |source: &CitySource| CityPlace { path: source.path.clone(), line: None, object: String::new() };
+    let across_m = (city.high - city.low).xy().amax();
+    if !(SMALLEST_CITY_M..=LARGEST_CITY_M).contains(&across_m) {
+        warnings.add(CityDefect::OddExtent { across_m }, 1, || place(&model.sources[0]));
+    }
+    for (source, other) in model.sources.iter().zip(&boxes).skip(1) {
+        let Some(other) = other else { continue };
+        let gap = (other.low - city.high).sup(&(city.low - other.high)).sup(&Vector3::zeros());
+        let distance_m = gap.norm();
+        if distance_m > NEAR_M.max(across_m) {
+            warnings.add(CityDefect::FarApart { distance_m }, 1, || place(source));
+        }
+    }
+}
+
+struct Extent {
+    low: Point3<f64>,
+    high: Point3<f64>,
+}
+
+fn extent(model: &CityModel, facets: std::ops::Range<u32>) -> Option<Extent> {
+    let facets = &model.facets[facets.start as usize..facets.end as usize];
+    let mut corners = facets.iter().flat_map(|facet| &facet.outline).map(|&vertex| model.vertices[vertex as usize]);
+    let first = corners.next()?;
+    let widen =
+        |extent: Extent, corner: Point3<f64>| Extent { low: extent.low.inf(&corner), high: extent.high.sup(&corner) };
+    Some(corners.fold(Extent { low: first, high: first }, widen))
 }

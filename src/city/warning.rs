@@ -52,6 +52,10 @@ pub enum CityDefect {
     MixedOrientation { edges: u64 },
     /// Objects with edges that only one facet has.
     OpenShell { open_edges: u64, edges: u64 },
+    /// The city is as wide as none is: other units than metres, or vertices that belong elsewhere.
+    OddExtent { across_m: f64 },
+    /// Further files so far from the city that they must be in another frame.
+    FarApart { distance_m: f64 },
 }
 
 impl CityDefect {
@@ -70,6 +74,9 @@ impl CityDefect {
             ) => {
                 *open_edges += others_open;
                 *edges += others;
+            }
+            (CityDefect::FarApart { distance_m }, CityDefect::FarApart { distance_m: other_m }) => {
+                *distance_m = distance_m.max(*other_m);
             }
             _ => {}
         }
@@ -133,6 +140,8 @@ impl fmt::Display for CityWarning {
                 ("object has facets whose sides disagree", "objects have facets whose sides disagree")
             }
             CityDefect::OpenShell { .. } => ("object is an open shell", "objects are open shells"),
+            CityDefect::OddExtent { .. } => ("city has an odd size", "cities have an odd size"),
+            CityDefect::FarApart { .. } => ("file lies far from the city", "files lie far from the city"),
         };
         write!(f, "{} {}", self.count, if self.count == 1 { one } else { many })?;
         match self.defect {
@@ -146,6 +155,12 @@ impl fmt::Display for CityWarning {
             CityDefect::MixedOrientation { edges } => write!(f, " (at {edges} edges), kept as they are")?,
             CityDefect::OpenShell { open_edges, edges } => {
                 write!(f, " ({open_edges} of {edges} edges belong to one facet alone), kept")?;
+            }
+            CityDefect::OddExtent { across_m } => {
+                write!(f, " ({across_m} m across; units must be metres, and no vertex may stray)")?;
+            }
+            CityDefect::FarApart { distance_m } => {
+                write!(f, " (up to {distance_m:.0} m; all files must be in one frame)")?;
             }
         }
         write!(f, "; first: {}", self.example)

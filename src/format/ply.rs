@@ -77,6 +77,9 @@ enum Role {
     Other,
 }
 
+/// A property of an element: what it is for, its name, its type.
+type Column<'a> = (Role, &'a str, &'a PropertyType);
+
 impl Role {
     fn of(name: &str) -> Role {
         match name {
@@ -346,6 +349,8 @@ impl PlyFile<'_> {
         let mut last_line = header_lines;
         for element in header.elements.values() {
             let mut collector = Collector::new(element);
+            let columns: Vec<Column> =
+                element.properties.values().map(|p| (Role::of(&p.name), p.name.as_str(), &p.data_type)).collect();
             for number in 0..element.count {
                 let Some((line, row)) = rows.next() else {
                     let expected = format!("{} rows of {}", element.count, element.name);
@@ -353,7 +358,7 @@ impl PlyFile<'_> {
                     return Err(PlyError::Row { path: self.path.into(), line: last_line, expected, got });
                 };
                 last_line = line;
-                let vertex = self.ascii_row(element, line, row)?;
+                let vertex = self.ascii_row(&element.name, &columns, line, row)?;
                 if element.name == "vertex" {
                     collector.push(vertex);
                 }
@@ -373,7 +378,7 @@ impl PlyFile<'_> {
         }
     }
 
-    fn ascii_row(&self, element: &ElementDef, line: usize, row: &[u8]) -> Result<Vertex, PlyError> {
+    fn ascii_row(&self, element: &str, columns: &[Column], line: usize, row: &[u8]) -> Result<Vertex, PlyError> {
         let fault = |expected: String, got: &[u8]| {
             let got = match got {
                 [] => "the end of the line".to_string(),
@@ -383,13 +388,13 @@ impl PlyFile<'_> {
         };
         let mut vertex = Vertex::default();
         let mut rest = row;
-        for property in element.properties.values() {
+        for (role, name, data_type) in columns {
             let mut value = || match number(&mut rest) {
                 Some(value) => Ok(value),
-                None => Err(fault(format!("a number for `{}` of {}", property.name, element.name), rest)),
+                None => Err(fault(format!("a number for `{name}` of {element}"), rest)),
             };
-            match &property.data_type {
-                PropertyType::Scalar(scalar) => vertex.set(Role::of(&property.name), value()?, color_of_one(scalar)),
+            match data_type {
+                PropertyType::Scalar(scalar) => vertex.set(*role, value()?, color_of_one(scalar)),
                 PropertyType::List(..) => {
                     let length = value()?;
                     // A length beyond the row's end, or one that is no number, is found by the values it asks for.
@@ -401,7 +406,7 @@ impl PlyFile<'_> {
         }
         match rest.trim_ascii() {
             [] => Ok(vertex),
-            rest => Err(fault(format!("{} values in a row of {}", element.properties.len(), element.name), rest)),
+            rest => Err(fault(format!("{} values in a row of {element}", columns.len()), rest)),
         }
     }
 }

@@ -127,12 +127,15 @@ fn parse<T>(path: &Path, bytes: &mut Vec<u8>, binary: BinaryParser<T>, text: Tex
     }
     bytes.reserve_exact(usize::try_from(length).unwrap_or(0));
     reader.read_to_end(bytes).map_err(Fault::Unreadable)?;
-    text(bytes)
+    text(bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes))
 }
+
+/// What some editors put before text.
+const UTF8_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// A binary file starts with a count of 8 bytes, which are not all letters, digits and blanks (the high ones are zero).
 fn is_text(start: &[u8], named_as_text: bool) -> bool {
-    match start.first_chunk::<8>() {
+    match start.strip_prefix(UTF8_MARK).unwrap_or(start).first_chunk::<8>() {
         Some(start) => start.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()),
         None => named_as_text,
     }
@@ -140,4 +143,30 @@ fn is_text(start: &[u8], named_as_text: bool) -> bool {
 
 fn line_of(bytes: &[u8], at: u64) -> usize {
     1 + bytes.iter().zip(0..at).filter(|(byte, _)| **byte == b'\n').count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn binary_and_text_are_told_apart_by_their_first_bytes() {
+        assert!(is_text(b"# Camera list", false));
+        assert!(is_text(b"1 PINHOLE 640", false));
+        assert!(is_text(b"\xEF\xBB\xBF# Camera list", false));
+        assert!(!is_text(&[1, 0, 0, 0, 0, 0, 0, 0, 5], true));
+        assert!(!is_text(&[0xFF; 16], true));
+        assert!(is_text(b"", true) && !is_text(b"", false));
+    }
+
+    #[test]
+    fn text_with_a_mark_before_it_is_read_and_its_lines_are_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cameras.txt");
+        std::fs::write(&path, b"\xEF\xBB\xBF# cameras\n1 PINHOLE 640 480 1 1 1 1\n").unwrap();
+        assert_eq!(read_file(folder.path(), "cameras", binary::cameras, text::cameras).unwrap().len(), 1);
+        std::fs::write(&path, b"\xEF\xBB\xBF# cameras\n1 PINHOLE 640\n").unwrap();
+        let error = read_file(folder.path(), "cameras", binary::cameras, text::cameras).unwrap_err();
+        assert!(matches!(error, ColmapError::Malformed { place: Place::Line(2), .. }), "{error}");
+    }
 }

@@ -24,7 +24,9 @@
 //! | [`upright_se3_4pt`] | (2,1,1), (1,1,1,1) | 2 | 2 |
 //! | [`upright_sim3_5pt`] | (2,1,1,1), (1,1,1,1,1) | 2 | 1.53, 1.57 |
 //!
-//! [`solve_minimal`] picks by the points per plane.
+//! [`solve_minimal`] picks by the points per plane; [`Configuration`] tells what each costs. [`solve`] takes rows in any number and
+//! distribution, tells why a pose is not determined, and is what `cityweld solve` runs ([`problem`]); [`primitives`] turns points,
+//! lines and planes on either side into rows. [`refine`] polishes on any number of rows.
 
 // `!(a > b)` is meant: it refuses NaN. Loops over matrix indices read like the formulas that they are.
 #![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]

@@ -220,3 +220,78 @@ fn near_triangles(
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::city::{CityModel, Facet, ObjectId};
+    use crate::geometry::Plane;
+
+    /// Two walls, 0.4 m apart, back to back, 10 m wide and 6 m high: one looks to +x from x = 0.2, one to -x from x = -0.2.
+    fn two_walls() -> CityModel {
+        let mut city = CityModel { objects: vec!["walls".to_owned()], ..CityModel::default() };
+        for (x, side) in [(0.2, 1.0), (-0.2, -1.0)] {
+            let first = city.vertices.len() as u32;
+            let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 6.0), (0.0, 6.0)];
+            city.vertices.extend(corners.iter().map(|&(y, z)| Point3::new(x, y, z)));
+            let start = city.triangles.len() as u32;
+            city.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+            city.facets.push(Facet {
+                outline: (first..first + 4).collect(),
+                plane: Plane::through(&Point3::new(x, 0.0, 0.0), &Vector3::new(side, 0.0, 0.0)).unwrap(),
+                area: 60.0,
+                object: ObjectId(0),
+                triangles: start..start + 2,
+            });
+        }
+        city
+    }
+
+    fn field() -> FacetField {
+        FacetField::new(&two_walls(), &Point3::new(-5.0, -5.0, -5.0), &Point3::new(5.0, 15.0, 12.0), 1.5, |_| true)
+    }
+
+    fn probe(x: f64, y: f64, z: f64, side: f64) -> Probe {
+        Probe { position: Point3::new(x, y, z), normal: Vector3::new(side, 0.0, 0.0), sided: true, min_cos: 0.9 }
+    }
+
+    #[test]
+    fn finds_the_facet_that_faces_the_same_way_though_another_is_nearer() {
+        let field = field();
+        let hit = field.nearest(&probe(-0.3, 5.0, 3.0, 1.0), 1.0).unwrap();
+        assert!((hit.across_m + 0.5).abs() < 1e-12 && hit.outside_m == 0.0);
+        assert_eq!(field.triangles[hit.triangle as usize].facet, FacetId(0));
+        let either = Probe { sided: false, ..probe(-0.3, 5.0, 3.0, 1.0) };
+        assert_eq!(field.triangles[field.nearest(&either, 1.0).unwrap().triangle as usize].facet, FacetId(1));
+    }
+
+    #[test]
+    fn measures_to_the_edge_and_ends_at_the_gate() {
+        let field = field();
+        let hit = field.nearest(&probe(0.2, 5.0, 6.7, 1.0), 1.0).unwrap();
+        assert!(hit.across_m.abs() < 1e-12 && (hit.outside_m - 0.7).abs() < 1e-12);
+        assert!(field.nearest(&probe(0.2, 5.0, 7.2, 1.0), 1.0).is_none());
+        assert!(field.nearest(&probe(f64::NAN, 5.0, 3.0, 1.0), 1.0).is_none());
+        assert!(field.nearest(&probe(1e9, 5.0, 3.0, 1.0), 1.0).is_none());
+    }
+
+    #[test]
+    fn agrees_with_looking_at_every_triangle() {
+        let field = field();
+        for i in 0..500 {
+            let part = |k: u64| ((i as u64 * 2_654_435_761 + k * 40_503) % 1000) as f64 / 1000.0;
+            let p = probe(2.0 * part(1) - 1.0, 14.0 * part(2) - 2.0, 10.0 * part(3) - 2.0, 1.0);
+            let slow = field
+                .triangles
+                .iter()
+                .filter(|t| t.normal.x > 0.0)
+                .map(|t| (t.normal.dot(&p.position.coords) + t.offset).hypot(t.outside(&p.position)))
+                .fold(f64::INFINITY, f64::min);
+            let fast = field.nearest(&p, 1.5).map(|h| h.distance_sq().sqrt());
+            match fast {
+                Some(d) => assert!((d - slow).abs() < 1e-12),
+                None => assert!(slow >= 1.5),
+            }
+        }
+    }
+}

@@ -127,9 +127,9 @@ impl Votes {
         let mut taken = vec![false; patches.points.len()];
         self.point_of.iter().for_each(|&i| taken[i as usize] = true);
         let min_cos = GRAZING_DEG.to_radians().cos();
-        for i in 0..patches.points.len() {
-            let Some(view) = patches.views[i].try_normalize(0.0).filter(|_| !taken[i]) else { continue };
-            let position = to_level.apply(&patches.points[i]);
+        for (i, (point, view)) in patches.points.iter().zip(&patches.views).enumerate() {
+            let Some(view) = view.try_normalize(0.0).filter(|_| !taken[i]) else { continue };
+            let position = to_level.apply(point);
             self.probes.push(Probe { position, normal: to_level.rotation * view, sided: true, min_cos });
             self.point_of.push(i as u32);
             self.weights.push(0.0);

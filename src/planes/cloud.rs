@@ -38,7 +38,7 @@ pub fn local_surfaces(points: &[Point3<f64>]) -> (Vec<Option<LocalSurface>>, Vec
             .nearest_n::<SquaredEuclidean<f64>>(count)
             .execute()
             .iter()
-            .map(|n| (n.distance, n.item as u32))
+            .map(|n| (n.distance, n.item))
             .collect();
         // The tree answers ties by its layout.
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

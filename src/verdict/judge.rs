@@ -153,3 +153,72 @@ fn aligned_reason(best: &Rival, second: Option<&Rival>, hold: &Hold) -> String {
         hold.by_plane.len()
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, Vector3};
+    use crate::robust::{Chart, Matrix7};
+
+    fn rival(shift: [f64; 3], share: f64, blocked: f64) -> Rival {
+        let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
+        Rival { city_from_sfm, share, blocked, balance: share - blocked }
+    }
+
+    /// Two planes that hold everything to 0.05 m, but for the freedom `open`.
+    fn hold(open: Option<usize>) -> Hold {
+        let mut information = Matrix7::identity() * 200.0;
+        if let Some(k) = open {
+            information[(k, k)] = 0.0;
+        }
+        Hold {
+            chart: Chart { center: Point3::origin(), radius: 20.0 },
+            by_plane: vec![information, information],
+            start: Matrix7::identity() * 0.01,
+            scale_is_fixed: false,
+        }
+    }
+
+    #[test]
+    fn is_aligned_when_all_is_held_and_nothing_rivals() {
+        let ruling = judge(&[rival([0.0; 3], 0.8, 0.02), rival([5.0, 0.0, 0.0], 0.3, 0.2)], &hold(None), true);
+        assert_eq!(ruling.verdict, Verdict::Aligned, "{}", ruling.reason);
+    }
+
+    #[test]
+    fn is_undetermined_along_up_when_only_walls_hold() {
+        let ruling = judge(&[rival([0.0; 3], 0.8, 0.0)], &hold(Some(5)), true);
+        assert_eq!(ruling.verdict, Verdict::Undetermined);
+        assert!(ruling.reason.contains("along up") && ruling.reason.contains("--terrain"), "{}", ruling.reason);
+    }
+
+    #[test]
+    fn a_shift_along_what_is_open_is_no_rival_and_any_other_is() {
+        let same = judge(&[rival([0.0; 3], 0.8, 0.0), rival([0.0, 0.0, 4.0], 0.79, 0.0)], &hold(Some(5)), true);
+        assert_eq!(same.verdict, Verdict::Undetermined);
+        let other = judge(&[rival([0.0; 3], 0.8, 0.0), rival([4.0, 0.0, 0.0], 0.79, 0.0)], &hold(None), true);
+        assert_eq!(other.verdict, Verdict::Ambiguous);
+        assert_eq!(other.alternatives.len(), 1);
+        assert!(other.alternatives[0].differs.contains("shifted by (4.00, 0.00, 0.00) m"));
+    }
+
+    #[test]
+    fn blocked_lines_of_sight_fail_a_pose_that_fits_walls() {
+        let ruling = judge(&[rival([0.0; 3], 0.42, 0.4)], &hold(None), true);
+        assert_eq!(ruling.verdict, Verdict::Failed);
+        assert_eq!(judge(&[], &hold(None), true).verdict, Verdict::Failed);
+    }
+
+    #[test]
+    fn one_plane_alone_determines_nothing() {
+        let mut alone = hold(None);
+        alone.by_plane.truncate(1);
+        assert_eq!(judge(&[rival([0.0; 3], 0.8, 0.0)], &alone, true).verdict, Verdict::Undetermined);
+    }
+
+    #[test]
+    fn without_cameras_half_of_the_vote_must_lie_on_the_city() {
+        assert_eq!(judge(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), true).verdict, Verdict::Aligned);
+        assert_eq!(judge(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), false).verdict, Verdict::Failed);
+    }
+}

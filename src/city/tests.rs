@@ -232,7 +232,7 @@ fn other_units_and_frames_are_noticed() {
     let elsewhere = "v 51 70 0\nv 53 70 0\nv 53 73 0\nf 1 2 3\n";
     let model = build(vec![source(CityRole::City, BOX), source(CityRole::Terrain, elsewhere)]).unwrap();
     let sentence = model.warnings[0].to_string();
-    assert!(sentence.starts_with("1 file lies far from the city (up to 444966 m;"), "{sentence}");
+    assert!(sentence.starts_with("1 file lies far from the city (up to 444960 m;"), "{sentence}");
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! glTF 2.0 and GLB: the triangles of a scene, every mesh where its nodes put it, in f64.
 //!
 //! The `gltf` crate knows the format; it rounds node transforms to f32, opens whatever file a buffer names, and trusts
-//! accessors. So buffers and transforms are read here (`buffers.rs`), and every accessor is checked (`check.rs`) before the
-//! crate reads it.
+//! accessors. So buffers and transforms are read here, and every accessor is checked before the crate reads it.
 
 mod buffers;
 mod check;

@@ -1,7 +1,7 @@
 //! Wavefront OBJ: polygons with their objects and groups, positions in f64.
 //!
 //! The `obj` crate reads faces, objects and groups; it keeps positions in f32, loses faces on nameless groups and
-//! accepts what is no mesh. So a guard (`guard.rs`) stands before it: it reads the lines, keeps the positions itself, hands
+//! accepts what is no mesh. So a guard stands before it: it reads the lines, keeps the positions itself, hands
 //! on only what the crate reads well, and remembers on which line everything stood.
 
 mod guard;

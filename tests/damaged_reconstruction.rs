@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use cityweld::export::colmap::write_colmap;
 use cityweld::export::ply::write_ply;
+use cityweld::format::colmap::Encoding;
 use cityweld::reconstruction::{PointIndex, Reconstruction, WarningKind, read_reconstruction};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -180,7 +181,19 @@ fn content_decides_between_binary_and_text_whatever_the_name() {
     for path in files_of(&data().join("text/sound")) {
         fs::copy(&path, top.path().join(path.file_name().unwrap()).with_extension("bin")).unwrap();
     }
-    check_sound(&read_reconstruction(top.path()).unwrap());
+    let read = read_reconstruction(top.path()).unwrap();
+    check_sound(&read);
+    assert_eq!(read.colmap.unwrap().encoding, Encoding::Text);
+}
+
+#[test]
+fn binary_files_count_where_a_folder_holds_both() {
+    let folder = model("text", "sound_framed");
+    for path in files_of(&data().join("binary/sound")) {
+        fs::copy(&path, folder.path().join(path.file_name().unwrap())).unwrap();
+    }
+    let colmap = read_reconstruction(folder.path()).unwrap().colmap.unwrap();
+    assert_eq!((colmap.encoding, colmap.rigs, colmap.frames), (Encoding::Binary, None, None));
 }
 
 #[test]

@@ -9,7 +9,9 @@ use super::ids::{IdFault, IdIndex};
 use super::tracks::{Links, tracks};
 use super::transform::rotation_of;
 use super::*;
-use crate::format::colmap::{CameraRecord, ImageRecord, Model, NO_POINT, ObservationRecord, PointRecords, PoseRecord};
+use crate::format::colmap::{
+    CameraRecord, ImageRecord, Model, NO_POINT, ObservationRecord, PointRecords, PoseRecord, record_file,
+};
 use crate::geometry::CameraModel;
 
 /// How far a quaternion's length may be from one without a word: text of few digits.
@@ -18,7 +20,6 @@ const QUATERNION_TOLERANCE: f64 = 1e-3;
 /// Gathers faults and warnings of one model.
 pub(super) struct Checker {
     folder: PathBuf,
-    extension: &'static str,
     warnings: Vec<ReconstructionWarning>,
 }
 
@@ -30,7 +31,7 @@ impl Checker {
         expected: &str,
         got: impl std::fmt::Display,
     ) -> ReconstructionError {
-        let path = self.folder.join(format!("{stem}.{}", self.extension));
+        let path = record_file(&self.folder, stem);
         ReconstructionError::Inconsistent {
             path,
             object: object.into(),
@@ -79,8 +80,7 @@ impl Checker {
 }
 
 pub(super) fn reconstruction(folder: &Path, model: Model) -> Result<Reconstruction, ReconstructionError> {
-    let extension = model.encoding.extension();
-    let mut check = Checker { folder: folder.into(), extension, warnings: Vec::new() };
+    let mut check = Checker { folder: folder.into(), warnings: Vec::new() };
     if model.points.ids.is_empty() {
         return Err(ReconstructionError::NoPoints { path: folder.into() });
     }

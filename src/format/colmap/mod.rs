@@ -64,26 +64,34 @@ pub fn missing_files(folder: &Path) -> Vec<&'static str> {
     NEEDED_STEMS.into_iter().filter(|stem| find(folder, stem).is_none()).collect()
 }
 
+/// The file of the records `stem` (cameras, images, points3D, rigs or frames), for messages.
+pub fn record_file(folder: &Path, stem: &str) -> PathBuf {
+    find(folder, stem).unwrap_or_else(|| folder.join(format!("{stem}.bin")))
+}
+
 /// Reads every record file of `folder`. Whether a file is binary or text is judged by its content.
 pub fn read_model(folder: &Path) -> Result<Model, ColmapError> {
     let (points, images) = rayon::join(
         || read_file(folder, "points3D", binary::points, text::points),
         || read_file(folder, "images", binary::images, text::images),
     );
-    let images_are_text = find(folder, "images").is_some_and(|path| path.extension().is_some_and(|e| e == "txt"));
-    Ok(Model {
-        encoding: if images_are_text { Encoding::Text } else { Encoding::Binary },
-        cameras: read_file(folder, "cameras", binary::cameras, text::cameras)?,
-        rigs: read_optional(folder, "rigs", binary::rigs, text::rigs)?,
-        frames: read_optional(folder, "frames", binary::frames, text::frames)?,
-        images: images?,
-        points: points?,
-    })
+    let (cameras, _) = read_file(folder, "cameras", binary::cameras, text::cameras)?;
+    let rigs = read_optional(folder, "rigs", binary::rigs, text::rigs)?;
+    let frames = read_optional(folder, "frames", binary::frames, text::frames)?;
+    let ((images, encoding), (points, _)) = (images?, points?);
+    Ok(Model { encoding, cameras, rigs, frames, images, points })
 }
 
-/// The file of that stem; binary first where both are there, as COLMAP does.
+/// The file of that stem. Where a folder holds a whole model in one encoding, only that counts, binary before text, as
+/// for COLMAP.
 fn find(folder: &Path, stem: &str) -> Option<PathBuf> {
-    ["bin", "txt"].iter().map(|ext| folder.join(format!("{stem}.{ext}"))).find(|path| path.is_file())
+    let file = |stem: &str, extension: &str| folder.join(format!("{stem}.{extension}"));
+    let is_whole = |extension: &&str| NEEDED_STEMS.iter().all(|stem| file(stem, extension).is_file());
+    let extensions = match ["bin", "txt"].into_iter().find(is_whole) {
+        Some(whole) => vec![whole],
+        None => vec!["bin", "txt"],
+    };
+    extensions.into_iter().map(|extension| file(stem, extension)).find(|path| path.is_file())
 }
 
 type BinaryParser<T> = fn(Cursor<BufReader<File>>) -> Result<T, Fault>;
@@ -101,11 +109,16 @@ fn read_optional<T>(
     if find(folder, stem).is_none() {
         return Ok(None);
     }
-    read_file(folder, stem, binary, text).map(Some)
+    read_file(folder, stem, binary, text).map(|(records, _)| Some(records))
 }
 
-fn read_file<T>(folder: &Path, stem: &str, binary: BinaryParser<T>, text: TextParser<T>) -> Result<T, ColmapError> {
-    let path = find(folder, stem).unwrap_or_else(|| folder.join(format!("{stem}.bin")));
+fn read_file<T>(
+    folder: &Path,
+    stem: &str,
+    binary: BinaryParser<T>,
+    text: TextParser<T>,
+) -> Result<(T, Encoding), ColmapError> {
+    let path = record_file(folder, stem);
     let mut bytes = Vec::new();
     parse(&path, &mut bytes, binary, text).map_err(|fault| match fault {
         Fault::Unreadable(source) => ColmapError::Unreadable { path: path.clone(), source },
@@ -117,17 +130,22 @@ fn read_file<T>(folder: &Path, stem: &str, binary: BinaryParser<T>, text: TextPa
 }
 
 /// Text is read whole, into `bytes`.
-fn parse<T>(path: &Path, bytes: &mut Vec<u8>, binary: BinaryParser<T>, text: TextParser<T>) -> Result<T, Fault> {
+fn parse<T>(
+    path: &Path,
+    bytes: &mut Vec<u8>,
+    binary: BinaryParser<T>,
+    text: TextParser<T>,
+) -> Result<(T, Encoding), Fault> {
     let file = File::open(path).map_err(Fault::Unreadable)?;
     let length = file.metadata().map_err(Fault::Unreadable)?.len();
     let mut reader = BufReader::with_capacity(READ_BYTES, file);
     let start = reader.fill_buf().map_err(Fault::Unreadable)?;
     if !is_text(start, path.extension().is_some_and(|e| e == "txt")) {
-        return binary(Cursor::new(reader, length));
+        return Ok((binary(Cursor::new(reader, length))?, Encoding::Binary));
     }
     bytes.reserve_exact(usize::try_from(length).unwrap_or(0));
     reader.read_to_end(bytes).map_err(Fault::Unreadable)?;
-    text(bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes))
+    Ok((text(bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes))?, Encoding::Text))
 }
 
 /// What some editors put before text.
@@ -164,7 +182,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cameras.txt");
         std::fs::write(&path, b"\xEF\xBB\xBF# cameras\n1 PINHOLE 640 480 1 1 1 1\n").unwrap();
-        assert_eq!(read_file(folder.path(), "cameras", binary::cameras, text::cameras).unwrap().len(), 1);
+        assert_eq!(read_file(folder.path(), "cameras", binary::cameras, text::cameras).unwrap().0.len(), 1);
         std::fs::write(&path, b"\xEF\xBB\xBF# cameras\n1 PINHOLE 640\n").unwrap();
         let error = read_file(folder.path(), "cameras", binary::cameras, text::cameras).unwrap_err();
         assert!(matches!(error, ColmapError::Malformed { place: Place::Line(2), .. }), "{error}");

@@ -59,6 +59,11 @@ impl<'a> Line<'a> {
     /// The next value, not yet taken.
     fn peek(&mut self) -> &'a [u8] {
         self.skip_blanks();
+        self.token()
+    }
+
+    /// What stands here up to the next blank.
+    fn token(&self) -> &'a [u8] {
         let length = self.rest.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(self.rest.len());
         &self.rest[..length]
     }
@@ -70,13 +75,8 @@ impl<'a> Line<'a> {
                 self.skip(length);
                 Ok(value)
             }
-            _ => Err(self.fault(expected, self.peek_token())),
+            _ => Err(self.fault(expected, self.token())),
         }
-    }
-
-    fn peek_token(&self) -> &'a [u8] {
-        let length = self.rest.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(self.rest.len());
-        &self.rest[..length]
     }
 
     fn u64(&mut self, expected: &str) -> Result<u64, Fault> {
@@ -86,33 +86,25 @@ impl<'a> Line<'a> {
         for digit in self.rest.iter().map_while(|b| b.is_ascii_digit().then(|| u64::from(b - b'0'))) {
             match value.checked_mul(10).and_then(|v| v.checked_add(digit)) {
                 Some(next) => value = next,
-                None => return Err(self.fault(expected, self.peek_token())),
+                None => return Err(self.fault(expected, self.token())),
             }
             length += 1;
         }
         if length == 0 || self.rest.get(length).is_some_and(|b| !b.is_ascii_whitespace()) {
-            return Err(self.fault(expected, self.peek_token()));
+            return Err(self.fault(expected, self.token()));
         }
         self.skip(length);
         Ok(value)
     }
 
     fn u32(&mut self, expected: &str) -> Result<u32, Fault> {
-        let (rest, at) = (self.rest, self.at);
         let value = self.u64(expected)?;
-        u32::try_from(value).map_err(|_| {
-            (self.rest, self.at) = (rest, at);
-            self.fault(&format!("{expected} below 2^32"), value.to_string().as_bytes())
-        })
+        u32::try_from(value).map_err(|_| self.fault(&format!("{expected} below 2^32"), value.to_string().as_bytes()))
     }
 
     fn u8(&mut self, expected: &str) -> Result<u8, Fault> {
-        let (rest, at) = (self.rest, self.at);
         let value = self.u64(expected)?;
-        u8::try_from(value).map_err(|_| {
-            (self.rest, self.at) = (rest, at);
-            self.fault(expected, value.to_string().as_bytes())
-        })
+        u8::try_from(value).map_err(|_| self.fault(expected, value.to_string().as_bytes()))
     }
 
     fn record_id(&mut self, expected: &str) -> Result<u32, Fault> {

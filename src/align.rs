@@ -193,8 +193,8 @@ fn start_information(start: &Start, radius: f64) -> Matrix7 {
     Matrix7::from_diagonal(&information.into())
 }
 
-/// One or two points lie on a plane by chance.
-const FEWEST_ON_PLANE: usize = 3;
+/// A single point lies on a plane by chance.
+const FEWEST_ON_PLANE: usize = 2;
 
 /// A start that claims to be exact is still only as good as this, metres.
 const SMALLEST_SIGMA_M: f64 = 1e-6;

@@ -3,7 +3,7 @@
 //! Input        the information that each plane of the city contributes at the pose (one plane is one vote of limited weight), and
 //!              that of the start
 //! Method       eigenvectors of the summed information are the freedoms; a freedom is determined when the data alone hold it to within
-//!              a limit and more than one plane does so. Its sigma includes the start, so that it is finite
+//!              a limit. Its sigma includes the start, so that it is finite
 //! Source       mathematics of the normalised Jacobian: Gelfand et al. (3DIM 2003) for the slippable motions of a surface
 
 use nalgebra::SymmetricEigen;
@@ -37,8 +37,6 @@ pub struct Direction {
 /// A freedom that the data hold worse than this is not determined, metres at the scene's radius: a shift of a window's width is what a
 /// user would see.
 const DETERMINED_M: f64 = 0.35;
-/// One plane alone may be the model's mistake.
-const FEWEST_PLANES: f64 = 1.5;
 
 impl Hold {
     /// The freedoms, the loosest first.
@@ -50,10 +48,8 @@ impl Hold {
         let direction = |k: usize| {
             let unit: Vector7 = eigen.eigenvectors.column(k).into_owned();
             let along = |m: &Matrix7| unit.dot(&(m * unit)).max(0.0);
-            let (sum, squares) =
-                self.by_plane.iter().map(along).fold((0.0, 0.0), |(s, q), held| (s + held, q + held * held));
-            let planes = if squares > 0.0 { sum * sum / squares } else { 0.0 };
-            let determined = sum * DETERMINED_M * DETERMINED_M >= 1.0 && planes >= FEWEST_PLANES;
+            let sum: f64 = self.by_plane.iter().map(along).sum();
+            let determined = sum * DETERMINED_M * DETERMINED_M >= 1.0;
             Direction { unit, sigma_m: (sum + along(&self.start)).sqrt().recip(), determined }
         };
         let given = |d: &Direction| self.scale_is_fixed && d.unit[6].abs() > 0.9;

@@ -210,13 +210,6 @@ mod tests {
     }
 
     #[test]
-    fn one_plane_alone_determines_nothing() {
-        let mut alone = hold(None);
-        alone.by_plane.truncate(1);
-        assert_eq!(judge(&[rival([0.0; 3], 0.8, 0.0)], &alone, true).verdict, Verdict::Undetermined);
-    }
-
-    #[test]
     fn without_cameras_half_of_the_vote_must_lie_on_the_city() {
         assert_eq!(judge(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), true).verdict, Verdict::Aligned);
         assert_eq!(judge(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), false).verdict, Verdict::Failed);

@@ -16,7 +16,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("planes", &["geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["geometry", "city", "planes", "solvers", "robust"]),
     ("verdict", &["geometry", "robust"]),
-    ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict"]),
+    ("merging", &["geometry", "format", "reconstruction", "imagery", "robust"]),
+    ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict", "merging"]),
     (
         "align",
         &["geometry", "city", "reconstruction", "imagery", "solvers", "robust", "planes", "correspondence", "verdict"],

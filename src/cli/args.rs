@@ -31,6 +31,7 @@ pub struct Args {
 #[derive(Subcommand, Debug)]
 pub enum Command {
     Align(AlignArgs),
+    Merge(MergeArgs),
     Planes(PlanesArgs),
     Export(ExportArgs),
     Demo(DemoArgs),
@@ -109,6 +110,44 @@ pub struct AlignArgs {
     /// Up in the reconstruction's frame: auto, none, or X,Y,Z of any length
     #[arg(long, value_name = "UP", default_value = "auto", allow_hyphen_values = true)]
     pub up: UpArg,
+    /// Axis that is up in OBJ files
+    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
+    pub city_up: CityUpArg,
+}
+
+/// Join partial reconstructions of one place into one, and account for everything
+///
+/// Parts are joined over photographs of the same name (one is enough), or over a city. Writes a folder OUT with merge.json
+/// (verdict, each part's transform, edges, ledger), sfm/ (one COLMAP model), scene.glb (one colour per part) and
+/// points.ply. The frame is the first placed part's, or the city's (metres, z up).
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  \
+    cityweld merge part_a part_b -o out\n  \
+    cityweld merge part_a part_b part_c --photos photos/ -o out\n  \
+    cityweld merge part_a part_b --city city.obj --start a.json --start b.json -o out\n\n\
+    Exit status: 0 all parts are merged; 1 any other verdict (merge.json says why).")]
+pub struct MergeArgs {
+    /// Partial reconstructions: folders with COLMAP models (binary or text), or PLY clouds; at least two
+    #[arg(value_name = "PART", num_args = 2.., required = true)]
+    pub parts: Vec<PathBuf>,
+    /// Folder to make; must not exist (see --force)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Folder of the photographs (JPEG or PNG), named as in the reconstructions; the shared ones are enough
+    #[arg(long, value_name = "DIR")]
+    pub photos: Option<PathBuf>,
+    /// Folder of label images (PNG, grey, 8 or 16 bit; 0 is no superpixel), named as the photographs
+    #[arg(long, value_name = "DIR")]
+    pub labels: Option<PathBuf>,
+    /// City model in which the parts meet: OBJ, glTF or GLB; needs one --start for every part
+    #[arg(long, value_name = "CITY")]
+    pub city: Option<PathBuf>,
+    /// Further meshes in the same frame as CITY, such as ground; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub terrain: Vec<PathBuf>,
+    /// Coarse place of a part in the city, JSON (see `align --help`); once for every part, in their order
+    #[arg(long, value_name = "FILE")]
+    pub start: Vec<PathBuf>,
     /// Axis that is up in OBJ files
     #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
     pub city_up: CityUpArg,

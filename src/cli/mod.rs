@@ -5,6 +5,7 @@ mod args;
 mod demo;
 mod export;
 mod interrupt;
+mod merge;
 mod plan;
 mod planes;
 mod print;
@@ -74,6 +75,7 @@ pub fn run(args: Args) -> ExitCode {
 fn dispatch(command: &Command, session: &Session) -> anyhow::Result<Outcome> {
     match command {
         Command::Align(args) => align::run(args, session),
+        Command::Merge(args) => merge::run(args, session),
         Command::Planes(args) => planes::run(args, session),
         Command::Solve(args) => Ok(match solve::run(&args.problem) {
             0 => Outcome::Good,

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use cityweld::city::CityModel;
 use cityweld::export::Lie;
+use cityweld::merging::{Account, Merge};
 use cityweld::planes::CityPlanes;
 use cityweld::verdict::{Alignment, Freedom, Verdict};
 
@@ -82,6 +83,38 @@ pub fn of_city(city: &CityModel, planes: &CityPlanes, files: &[String], output: 
     }
     row("time", format!("{seconds:.1} s"));
     text
+}
+
+/// Verdict, parts, ledger, files and time.
+pub fn of_merge(merge: &Merge, output: &Path, files: &[&str], seconds: f64) -> String {
+    let mut text = format!("{}: {}\n", merge.verdict.word(), merge.reason);
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<13} {value}");
+    };
+    for part in &merge.parts {
+        let place = match (&part.merged_from_part, &part.reason) {
+            (Some(pose), _) => format!("placed, scale {:.6}", pose.scale),
+            (None, reason) => format!("left out: {}", reason.as_deref().unwrap_or("not placed")),
+        };
+        row(&part.name, place);
+    }
+    let accounts = [
+        ("images", &merge.ledger.images),
+        ("points", &merge.ledger.points),
+        ("observations", &merge.ledger.observations),
+    ];
+    accounts.into_iter().for_each(|(name, account)| row(name, account_line(account)));
+    row("written", format!("{} ({})", output.display(), files.join(", ")));
+    row("time", format!("{seconds:.1} s"));
+    text
+}
+
+fn account_line(account: &Account) -> String {
+    let mut line = format!("{} in = {} kept + {} fused", account.given, account.kept, account.fused);
+    for (reason, count) in &account.dropped {
+        let _ = write!(line, " + {count} dropped ({reason})");
+    }
+    line
 }
 
 /// What was written again.

@@ -5,6 +5,7 @@ pub mod colmap;
 mod file;
 mod folder;
 mod glb;
+mod merge_report;
 pub mod gltf;
 mod output;
 mod planes;
@@ -13,6 +14,7 @@ mod report;
 
 pub use file::ExportError;
 pub use folder::{Formats, write_alignment, write_placed};
+pub use merge_report::{merge_report, write_merge};
 pub use output::{Discard, Output, OutputError, OutputKind};
 pub use planes::{Lie, planes_report, write_planes_glb};
 pub use report::{CityCounts, InputSummary, ReportError, SfmCounts, alignment_report};

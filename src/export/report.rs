@@ -122,14 +122,14 @@ struct AlignmentJson<'a> {
 }
 
 #[derive(Serialize)]
-struct SimilarityJson {
+pub(super) struct SimilarityJson {
     scale: f64,
     rotation: Vec<Box<RawValue>>,
     translation: Box<RawValue>,
 }
 
 impl SimilarityJson {
-    fn of(similarity: &Similarity) -> Result<SimilarityJson, serde_json::Error> {
+    pub(super) fn of(similarity: &Similarity) -> Result<SimilarityJson, serde_json::Error> {
         let r = similarity.rotation.matrix();
         let rows = (0..3).map(|i| to_raw_value(&[r[(i, 0)], r[(i, 1)], r[(i, 2)]]));
         Ok(SimilarityJson {

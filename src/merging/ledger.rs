@@ -1,0 +1,95 @@
+//! Nothing is lost in silence: what went in is kept, fused or dropped with a reason, and the sum is checked.
+
+use std::collections::BTreeMap;
+
+use super::{Fused, Part};
+
+/// `in = kept + fused + sum(dropped)`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Account {
+    pub given: usize,
+    /// Stand in the result on their own.
+    pub kept: usize,
+    /// Became part of one that is kept.
+    pub fused: usize,
+    /// By reason.
+    pub dropped: BTreeMap<&'static str, usize>,
+}
+
+/// Of all parts, the ones left out too.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ledger {
+    pub images: Account,
+    pub points: Account,
+    /// Keypoints that see a point.
+    pub observations: Account,
+}
+
+/// A defect of the program: nothing is written then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the ledger of {what} does not balance ({given} in; {kept} kept, {fused} fused, {dropped} dropped, {counted} in the \
+     result); please report this as a defect of cityweld"
+)]
+pub struct Unbalanced {
+    pub what: &'static str,
+    pub given: usize,
+    pub kept: usize,
+    pub fused: usize,
+    pub dropped: usize,
+    pub counted: usize,
+}
+
+pub(super) const NOT_PLACED: &str = "part not placed";
+
+impl Account {
+    pub(super) fn drop(&mut self, reason: &'static str, count: usize) {
+        if count > 0 {
+            *self.dropped.entry(reason).or_default() += count;
+        }
+    }
+}
+
+impl Ledger {
+    /// What goes in; `left_out` parts are dropped at once.
+    pub(super) fn open(parts: &[Part], is_placed: impl Fn(usize) -> bool) -> Ledger {
+        let mut ledger = Ledger::default();
+        for (index, part) in parts.iter().enumerate() {
+            let [images, points, observations] = counts(&part.sfm);
+            let accounts = [&mut ledger.images, &mut ledger.points, &mut ledger.observations];
+            for (account, count) in accounts.into_iter().zip([images, points, observations]) {
+                account.given += count;
+                if !is_placed(index) {
+                    account.drop(NOT_PLACED, count);
+                }
+            }
+        }
+        ledger
+    }
+
+    pub(super) fn nothing_placed(parts: &[Part]) -> Ledger {
+        Ledger::open(parts, |_| false)
+    }
+
+    /// The accounts balance, with each other, with the parts and with the model itself.
+    pub(super) fn check(&self, parts: &[Part], model: Option<&Fused>) -> Result<(), Unbalanced> {
+        let in_model = model.map_or([0; 3], |m| counts(&m.sfm));
+        let given = parts.iter().map(|p| counts(&p.sfm)).fold([0; 3], |s, c| [s[0] + c[0], s[1] + c[1], s[2] + c[2]]);
+        let accounts = [("images", &self.images), ("points", &self.points), ("observations", &self.observations)];
+        for ((what, account), (counted, given)) in accounts.into_iter().zip(in_model.into_iter().zip(given)) {
+            let dropped = account.dropped.values().sum();
+            let sum = account.kept + account.fused + dropped;
+            if account.given != sum || account.kept != counted || account.given != given {
+                let Account { kept, fused, .. } = *account;
+                return Err(Unbalanced { what, given, kept, fused, dropped, counted });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Images, points, keypoints that see a point.
+pub(super) fn counts(sfm: &crate::reconstruction::Reconstruction) -> [usize; 3] {
+    let linked = sfm.images.iter().map(|i| i.observations.iter().filter(|o| o.point.is_some()).count()).sum();
+    [sfm.images.len(), sfm.points.len(), linked]
+}

@@ -1,0 +1,163 @@
+//! Several reconstructions of one place become one.
+//!
+//! Question     which similarities carry the parts into one frame, do they belong together at all, and which cameras, images,
+//!              points and observations are the same?
+//! Input        parts as they were reconstructed, each in a frame of its own; photographs are told by name alone
+//! Output       [`Merge`]: a verdict, every part's place or the reason why it has none, one model, and a balanced [`Ledger`]
+//! Method       shared photographs give point pairs and camera poses, which are fitted and judged pair by pair; accepted pairs
+//!              form a graph that is solved as a whole; what was placed is fused
+//! Assumptions  a photograph of one name shows the same pixels in both parts, at whatever size
+//! Fails when   two parts share no photograph and no anchor, or their shared photographs have too few keypoints in common
+
+mod evidence;
+mod fit;
+mod fuse;
+mod graph;
+mod judge;
+mod ledger;
+mod links;
+mod pairwise;
+mod sigma;
+
+pub use ledger::{Account, Ledger, Unbalanced};
+pub use pairwise::{Edge, EdgeSource};
+
+use crate::geometry::Similarity;
+use crate::imagery::LiftedSuperpixels;
+use crate::reconstruction::Reconstruction;
+
+/// One of the reconstructions to be joined.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Unique among the parts.
+    pub name: String,
+    pub sfm: Reconstruction,
+    /// Of its photographs, where labels or photographs were given.
+    pub superpixels: Option<LiftedSuperpixels>,
+    /// Where the part stands in a common frame already (a city's), and whether that is to be relied on.
+    pub anchor: Option<Anchor>,
+}
+
+/// A part's place in a frame that all anchored parts share.
+#[derive(Clone, Debug)]
+pub struct Anchor {
+    pub common_from_part: Similarity,
+    pub determined: bool,
+    /// What the alignment said.
+    pub reason: String,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MergeOptions {
+    pub seed: u64,
+}
+
+/// How sure the program is that the parts are one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MergeVerdict {
+    /// Every part is placed.
+    Merged,
+    /// Two or more parts are placed, but not all.
+    Partial,
+    /// The parts seem to belong together, but the data do not fix how.
+    Undetermined,
+    /// Two or more ways to join them explain the data.
+    Ambiguous,
+    /// Nothing joins any two parts.
+    Failed,
+}
+
+impl MergeVerdict {
+    /// The word that the report uses.
+    pub fn word(self) -> &'static str {
+        match self {
+            MergeVerdict::Merged => "merged",
+            MergeVerdict::Partial => "partial",
+            MergeVerdict::Undetermined => "undetermined",
+            MergeVerdict::Ambiguous => "ambiguous",
+            MergeVerdict::Failed => "failed",
+        }
+    }
+}
+
+/// Where a part went.
+#[derive(Clone, Debug)]
+pub struct PartPlace {
+    pub name: String,
+    /// Only where the program stands behind it.
+    pub merged_from_part: Option<Similarity>,
+    /// What fits best where it does not.
+    pub best_candidate: Option<Similarity>,
+    /// Why it is not placed.
+    pub reason: Option<String>,
+    pub images: usize,
+    pub points: usize,
+}
+
+/// The outcome of a merge.
+#[derive(Clone, Debug)]
+pub struct Merge {
+    pub verdict: MergeVerdict,
+    /// One sentence with figures.
+    pub reason: String,
+    pub frame: String,
+    /// In the order in which the parts were given.
+    pub parts: Vec<PartPlace>,
+    pub edges: Vec<Edge>,
+    pub ledger: Ledger,
+    pub warnings: Vec<String>,
+    /// The joined model; `None` where no two parts were placed.
+    pub model: Option<Fused>,
+}
+
+/// One model out of several.
+#[derive(Clone, Debug)]
+pub struct Fused {
+    pub sfm: Reconstruction,
+    /// For each point the part (in the order given) that it comes from; of a fused one the first.
+    pub part_of_point: Vec<u32>,
+}
+
+/// Joins the parts. The order in which they are given changes nothing but the frame.
+pub fn merge(parts: &[Part], options: &MergeOptions, progress: &dyn Fn(&str)) -> Result<Merge, Unbalanced> {
+    let order = canonical_order(parts);
+    progress("comparing the parts");
+    let pairs = pairwise::all_pairs(parts, &order, options);
+    let solved = graph::solve(parts, &order, pairs);
+    let placed: Vec<usize> = order.iter().copied().filter(|&p| solved.places[p].merged_from_part.is_some()).collect();
+    progress("joining the parts");
+    let (model, ledger) = if placed.len() > 1 {
+        let places: Vec<Option<Similarity>> = solved.places.iter().map(|p| p.merged_from_part).collect();
+        let (model, ledger) = fuse::fuse(parts, &placed, &places);
+        (Some(model), ledger)
+    } else {
+        (None, Ledger::nothing_placed(parts))
+    };
+    ledger.check(parts, model.as_ref())?;
+    let warnings = parts.iter().flat_map(|part| {
+        let own = part.sfm.warnings.iter().map(ToString::to_string);
+        let imagery = part.superpixels.iter().flat_map(|s| s.warnings.iter().map(ToString::to_string));
+        own.chain(imagery).map(|text| format!("{}: {text}", part.name)).collect::<Vec<_>>()
+    });
+    Ok(Merge {
+        verdict: solved.verdict,
+        reason: solved.reason,
+        frame: solved.frame,
+        parts: solved.places,
+        edges: solved.edges,
+        ledger,
+        warnings: warnings.collect(),
+        model,
+    })
+}
+
+/// The parts by their content, so that neither names of folders nor the order of the arguments decide anything.
+fn canonical_order(parts: &[Part]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    order.sort_by(|&a, &b| {
+        let (a, b) = (&parts[a].sfm, &parts[b].sfm);
+        let bits = |r: &Reconstruction| r.points.first().map(|p| [p.x, p.y, p.z].map(f64::to_bits));
+        (b.images.len(), b.points.len()).cmp(&(a.images.len(), a.points.len())).then_with(|| bits(a).cmp(&bits(b)))
+    });
+    order
+}

@@ -1,0 +1,218 @@
+//! `cityweld merge` from files to files, on a scene that the test makes itself: a room's corner seen by five cameras, the
+//! third of which is in both parts.
+
+use std::path::Path;
+use std::process::Command;
+
+use cityweld::export::colmap::write_colmap;
+use cityweld::geometry::{Camera, CameraModel, Point3, Rotation3, Similarity, Vector3};
+use cityweld::merging::{MergeOptions, MergeVerdict, Part, merge};
+use cityweld::reconstruction::{
+    CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, read_reconstruction,
+};
+
+fn camera() -> Camera {
+    Camera { model: CameraModel::SimplePinhole, width_px: 1000, height_px: 800, params: vec![900.0, 500.0, 400.0] }
+}
+
+/// Points on a floor and two walls.
+fn world_points() -> Vec<Point3<f64>> {
+    let wave = |i: usize, step: f64| (i as f64 * step).fract();
+    (0..600)
+        .map(|i| {
+            let (u, v) = (6.0 * wave(i, 0.754_877_666), 4.0 * wave(i, 0.569_840_291));
+            match i % 3 {
+                0 => Point3::new(u - 3.0, 2.0, 8.0 + v),
+                1 => Point3::new(u - 3.0, v - 2.0, 12.0),
+                _ => Point3::new(3.0, v - 2.0, 8.0 + 0.66 * u),
+            }
+        })
+        .collect()
+}
+
+/// What the cameras `views` see, in a frame of the part's own.
+fn part(
+    views: std::ops::Range<usize>,
+    part_from_world: &Similarity,
+    photo_name: impl Fn(usize) -> String,
+) -> Reconstruction {
+    let world = world_points();
+    let mut r = Reconstruction { cameras: vec![camera()], camera_ids: vec![7], ..Reconstruction::default() };
+    let mut tracks: Vec<Vec<(ImageIndex, u32)>> = vec![Vec::new(); world.len()];
+    for view in views {
+        let rotation = Rotation3::from_euler_angles(0.0, 0.06 * (view as f64 - 2.0), 0.0);
+        let center = Point3::new(1.2 * view as f64 - 2.4, 0.1 * view as f64, 0.0);
+        let index = ImageIndex(r.images.len() as u32);
+        let mut image = Image {
+            id: 10 + index.0,
+            camera: CameraIndex(0),
+            name: photo_name(view),
+            cam_from_sfm_rotation: rotation,
+            cam_from_sfm_translation: -(rotation * center.coords),
+            ..Image::default()
+        };
+        for (p, x) in world.iter().enumerate() {
+            let Some([x_px, y_px]) = camera().project(&image.cam_from_sfm(x)) else { continue };
+            if (0.0..1000.0).contains(&x_px) && (0.0..800.0).contains(&y_px) {
+                tracks[p].push((index, image.observations.len() as u32));
+                image.observations.push(Observation { x_px, y_px, point: Some(PointIndex(p as u32)) });
+            }
+        }
+        r.images.push(image);
+    }
+    keep_seen_twice(&mut r, &world, tracks);
+    r.transformed(part_from_world)
+}
+
+fn keep_seen_twice(r: &mut Reconstruction, world: &[Point3<f64>], tracks: Vec<Vec<(ImageIndex, u32)>>) {
+    r.track_starts.push(0);
+    let mut number_of = vec![None; world.len()];
+    for (p, track) in tracks.into_iter().enumerate().filter(|(_, track)| track.len() > 1) {
+        number_of[p] = Some(PointIndex(r.points.len() as u32));
+        r.points.push(world[p]);
+        r.point_ids.push(100 + p as u64);
+        r.point_errors_px.push(0.5);
+        r.colors.push([90, 120, 30]);
+        r.track_elements.extend(track);
+        r.track_starts.push(r.track_elements.len() as u32);
+    }
+    for o in r.images.iter_mut().flat_map(|image| &mut image.observations) {
+        o.point = o.point.and_then(|p| number_of[p.0 as usize]);
+    }
+}
+
+fn second_from_world() -> Similarity {
+    Similarity {
+        scale: 0.4,
+        rotation: Rotation3::from_euler_angles(1.0, -0.5, 2.0),
+        translation: Vector3::new(9.0, -4.0, 2.0),
+    }
+}
+
+fn given(name: &str, sfm: Reconstruction) -> Part {
+    Part { name: name.into(), sfm, superpixels: None, anchor: None }
+}
+
+fn photo(view: usize) -> String {
+    format!("street/{view}.jpg")
+}
+
+fn two_parts() -> [Part; 2] {
+    let first = part(0..3, &Similarity::identity(), photo);
+    let second = part(2..5, &second_from_world(), photo);
+    [given("first", first), given("second", second)]
+}
+
+#[test]
+fn joins_two_parts_over_one_photograph_in_both_orders() {
+    let [first, second] = two_parts();
+    let x = Point3::new(1.0, -1.0, 9.0);
+    for (parts, frame_from_world) in
+        [([first.clone(), second.clone()], Similarity::identity()), ([second, first], second_from_world())]
+    {
+        let found = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+        assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
+        for (part, place) in parts.iter().zip(&found.parts) {
+            let part_from_world = if part.name == "first" { Similarity::identity() } else { second_from_world() };
+            let moved = place.merged_from_part.unwrap().apply(&part_from_world.apply(&x));
+            assert!((moved - frame_from_world.apply(&x)).norm() < 1e-4, "{}", part.name);
+        }
+        let model = found.model.unwrap();
+        assert_eq!(model.sfm.images.len(), 5);
+        assert_eq!(model.sfm.cameras.len(), 1, "equal intrinsics become one camera");
+        assert_eq!((found.ledger.images.given, found.ledger.images.fused), (6, 1));
+        // Every point that both parts see in the shared photograph becomes one.
+        assert!(found.ledger.points.fused > 100, "{:?}", found.ledger);
+        assert_eq!(found.ledger.points.given, found.ledger.points.kept + found.ledger.points.fused);
+    }
+}
+
+#[test]
+fn leaves_a_part_out_that_shares_nothing() {
+    let [first, second] = two_parts();
+    let stranger = part(0..3, &second_from_world(), |view| format!("elsewhere/{view}.jpg"));
+    let found = merge(&[first, second, given("stranger", stranger)], &MergeOptions::default(), &|_| ()).unwrap();
+    assert_eq!(found.verdict, MergeVerdict::Partial);
+    assert!(found.parts[2].merged_from_part.is_none() && found.parts[2].reason.is_some());
+    assert_eq!(found.ledger.images.dropped.values().sum::<usize>(), 3);
+}
+
+#[test]
+fn does_not_join_photographs_that_only_share_their_name() {
+    let [first, second] = two_parts();
+    // The same name on another view: other keypoints.
+    let mut other = second;
+    other.sfm.images[0].name = "none.jpg".into();
+    other.sfm.images[2].name = photo(2);
+    let found = merge(&[first, other], &MergeOptions::default(), &|_| ()).unwrap();
+    assert_eq!(found.verdict, MergeVerdict::Failed, "{}", found.reason);
+    assert!(found.model.is_none());
+}
+
+#[test]
+fn does_not_join_a_part_that_is_stretched_along_one_axis() {
+    let [first, mut second] = two_parts();
+    let stretch = |p: &Point3<f64>| Point3::new(p.x, p.y, 1.3 * p.z);
+    for p in &mut second.sfm.points {
+        *p = stretch(p);
+    }
+    for image in &mut second.sfm.images {
+        image.cam_from_sfm_translation = -(image.cam_from_sfm_rotation * stretch(&image.center()).coords);
+    }
+    let found = merge(&[first, second], &MergeOptions::default(), &|_| ()).unwrap();
+    assert_eq!(found.verdict, MergeVerdict::Failed, "{}", found.reason);
+}
+
+#[test]
+fn gives_the_same_for_any_number_of_threads() {
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| merge(&two_parts(), &MergeOptions::default(), &|_| ()).unwrap().model.unwrap().sfm.points)
+    };
+    assert_eq!(run(1), run(3));
+}
+
+fn run(parts: &[&Path], out: &Path) -> std::process::Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cityweld"));
+    command.arg("merge").args(parts).arg("-o").arg(out).arg("--quiet").output().unwrap()
+}
+
+#[test]
+fn writes_a_model_that_can_be_read_again_and_says_how_it_ended() {
+    let room = tempfile::tempdir().unwrap();
+    let folders = ["a", "b"].map(|name| room.path().join(name));
+    for (folder, part) in folders.iter().zip(two_parts()) {
+        write_colmap(folder, &part.sfm).unwrap();
+    }
+    let out = room.path().join("out");
+    let ended = run(&[&folders[0], &folders[1]], &out);
+    assert_eq!(ended.status.code(), Some(0), "{ended:?}");
+    let joined = read_reconstruction(&out.join("sfm")).unwrap();
+    assert!(joined.images.len() == 5 && joined.warnings.is_empty(), "{:?}", joined.warnings);
+    let report: serde_json::Value = serde_json::from_slice(&std::fs::read(out.join("merge.json")).unwrap()).unwrap();
+    assert_eq!(report["verdict"], "merged");
+    for what in ["images", "points", "observations"] {
+        let account = &report["ledger"][what];
+        let count = |v: &serde_json::Value| v.as_u64().unwrap();
+        let dropped: u64 = account["dropped"].as_object().unwrap().values().map(count).sum();
+        assert_eq!(count(&account["in"]), count(&account["kept"]) + count(&account["fused"]) + dropped, "{what}");
+    }
+    assert!(out.join("scene.glb").is_file() && out.join("points.ply").is_file());
+
+    // An output that exists is not touched, and a part that is not there leaves nothing behind.
+    assert_eq!(run(&[&folders[0], &folders[1]], &out).status.code(), Some(2));
+    let nowhere = room.path().join("nowhere");
+    assert_eq!(run(&[&folders[0], &nowhere], &room.path().join("out2")).status.code(), Some(2));
+    assert!(!room.path().join("out2").exists());
+}
+
+#[test]
+fn one_part_given_twice_is_the_identity() {
+    let [first, _] = two_parts();
+    let found =
+        merge(&[given("a", first.sfm.clone()), given("b", first.sfm)], &MergeOptions::default(), &|_| ()).unwrap();
+    assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
+    let pose = found.parts[1].merged_from_part.unwrap();
+    assert!((pose.scale - 1.0).abs() < 1e-9 && pose.translation.norm() < 1e-9);
+    assert_eq!(found.ledger.images.kept, 3);
+}

@@ -92,7 +92,7 @@ fn read_parts(args: &MergeArgs, city: Option<&CityModel>, session: &Session) -> 
             Some(source) => match lift_superpixels(&sfm, &source, &SlicOptions::default(), &|_, _| ()) {
                 // Only shared photographs matter; a part without any file there has nothing to add.
                 Err(ImageryError::NothingFound { .. } | ImageryError::NoImages { .. }) => None,
-                lifted => Some(lifted?).map(without_missing),
+                lifted => Some(without_missing(lifted?)),
             },
         };
         let mut part = Part { name, sfm, superpixels, anchor: None };

@@ -108,7 +108,13 @@ impl Outcome<'_> {
     fn rival(&self, contender: &Contender) -> Rival {
         let local = contender.refined.city_from_level * self.scene.votes.level_from_sfm;
         let city_from_sfm = Similarity { translation: local.translation + self.city.origin, ..local };
-        Rival { city_from_sfm, share: contender.share, blocked: contender.blocked, balance: contender.balance() }
+        Rival {
+            city_from_sfm,
+            share: contender.share,
+            blocked: contender.blocked,
+            balance: contender.balance(),
+            lead_sigmas: contender.lead_sigmas,
+        }
     }
 
     /// Which points lie on which planes in the best pose.

@@ -6,6 +6,7 @@
 
 use rayon::prelude::*;
 
+use super::lead::{ballot, lead_sigmas};
 use super::pairing::Pairing;
 use super::refine::{ErrorModel, Refined, Refiner};
 use super::scene::{Scene, WIDEST_GATE};
@@ -28,6 +29,8 @@ pub struct Contender {
     pub prior_cost: f64,
     /// Samples of the search that led here.
     pub hits: usize,
+    /// By how many standard errors the best pose leads this one; see the card of `lead`.
+    pub lead_sigmas: f64,
 }
 
 impl Contender {
@@ -91,6 +94,7 @@ pub fn contest(scene: &Scene, scale: Option<f64>, seed: u64, progress: &(dyn Fn(
         blocked: 0.0,
         prior_cost: 0.0,
         hits: r.hits,
+        lead_sigmas: 0.0,
     };
     let mut contenders: Vec<Contender> = ranked.iter().map(unranked).collect();
     for stage in stages(scene) {
@@ -105,8 +109,17 @@ pub fn contest(scene: &Scene, scale: Option<f64>, seed: u64, progress: &(dyn Fn(
         let sharp = refiner.sharpen(&firm, &c.refined.city_from_level, scene.unit_m);
         c.refined = refiner.settle(&all, sharp, scene.unit_m, SETTLING_UNITS * scene.unit_m);
     }
+    compare_with_best(&mut contenders, scene, &scorer);
     contest.contenders = contenders;
     contest
+}
+
+fn compare_with_best(contenders: &mut [Contender], scene: &Scene, scorer: &Scorer) {
+    let ballots: Vec<Vec<f64>> = contenders.iter().map(|c| ballot(scene, scorer, &c.refined.city_from_level)).collect();
+    let costs: Vec<f64> = contenders.iter().map(|c| c.prior_cost).collect();
+    for (k, c) in contenders.iter_mut().enumerate().skip(1) {
+        c.lead_sigmas = lead_sigmas(&ballots[0], &ballots[k], costs[k] - costs[0]);
+    }
 }
 
 /// The refiner of a scene.
@@ -142,7 +155,7 @@ fn improved(scene: &Scene, refiner: &Refiner, stage: &Stage, contender: &Contend
     let pose = refined.city_from_level;
     let blocked = if stage.sight { blocked_share(scene, &pose) } else { 0.0 };
     let share = scorer.panel_share(&voters, &pose, gate_m);
-    Contender { refined, share, blocked, prior_cost: scorer.prior_cost(&pose), hits: contender.hits }
+    Contender { refined, share, blocked, prior_cost: scorer.prior_cost(&pose), hits: contender.hits, lead_sigmas: 0.0 }
 }
 
 /// A slide by the votes ends within this many units of the right place.

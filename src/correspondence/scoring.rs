@@ -32,13 +32,21 @@ const CHUNK: usize = 512;
 impl Scorer<'_> {
     /// Share of the vote explained within `gate_m` (metres of the start), by the probes of `panel` alike.
     pub fn panel_share(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> f64 {
+        self.votes_of(panel, city_from_level, gate_m).sum::<f64>() / panel.len().max(1) as f64
+    }
+
+    /// The vote of each probe of `panel`, 0 to 1.
+    pub fn panel_votes(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> Vec<f64> {
+        self.votes_of(panel, city_from_level, gate_m).collect()
+    }
+
+    fn votes_of(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> impl Iterator<Item = f64> {
         let mover = Mover::new(city_from_level);
         let gate_m = gate_m * city_from_level.scale;
-        let explained = |&i: &u32| {
+        panel.iter().map(move |&i| {
             let hit = self.field.nearest(&mover.probe(&self.votes.probes[i as usize]), gate_m);
             hit.map_or(0.0, |h| vote(h.distance_sq(), gate_m))
-        };
-        panel.iter().map(explained).sum::<f64>() / panel.len().max(1) as f64
+        })
     }
 
     /// Share of the vote explained within `gate_m`, by all probes with their weights.

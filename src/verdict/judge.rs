@@ -3,9 +3,12 @@
 //! | verdict | when |
 //! |---|---|
 //! | failed | the best pose explains less than a least share of the vote, lines of sight that it blocks taken off |
-//! | ambiguous | a truly different pose explains nearly as much; differences along freedoms that nothing holds do not count |
+//! | ambiguous | a truly different pose explains nearly as much (see below) |
 //! | undetermined | a freedom is not determined (see [`super::freedoms`]) |
 //! | aligned | otherwise |
+//!
+//! A rival explains nearly as much where its balance comes near the best one's, or somewhat less near while so few patches tell the
+//! two apart that chance may have decided. Differences along freedoms that nothing holds do not count.
 
 use super::freedoms::{Direction, Hold};
 use super::{Alternative, Verdict, freedoms, words};
@@ -23,6 +26,8 @@ pub struct Rival {
     pub blocked: f64,
     /// `share` less `blocked` less the cost of leaving the start.
     pub balance: f64,
+    /// By how many standard errors of the vote the best pose leads this one.
+    pub lead_sigmas: f64,
 }
 
 /// The verdict and what it rests on.
@@ -40,6 +45,12 @@ const LEAST_BALANCE: f64 = 0.34;
 const LEAST_BALANCE_WITHOUT_CAMERAS: f64 = 0.50;
 /// A rival that reaches this share of the best balance is taken seriously.
 const RIVAL_SHARE: f64 = 0.85;
+/// A rival that reaches this share is taken seriously too where chance explains its lag. One that explains less is none: three walls
+/// that agree lead by no more than 1.7 standard errors, and a building that stands alone has no more.
+const COMPARABLE_SHARE: f64 = 0.67;
+/// Chance explains a lag of fewer standard errors. On simulated captures of places that no other constant here was set on, wrong
+/// poses led comparable rivals by 1.6 at most, right ones by 2.0 at least: the middle.
+const LEAST_LEAD_SIGMAS: f64 = 1.8;
 /// Poses that differ by less than this along what is held are one pose, metres at the scene's radius.
 const SAME_M: f64 = 0.8;
 /// Rivals whose balance is below this share are not worth telling.
@@ -60,7 +71,7 @@ pub fn judge(rivals: &[Rival], hold: &Hold, has_cameras: bool) -> Ruling {
     let directions = hold.directions();
     let others: Vec<&Rival> = rivals[1..].iter().filter(|r| differs(best, r, hold, &directions)).collect();
     let alternatives = alternatives(best, &others, hold);
-    let serious = others.iter().filter(|r| r.balance >= RIVAL_SHARE * best.balance).count();
+    let serious = others.iter().filter(|r| is_serious(r, best)).count();
     let (verdict, reason) = if best.balance < least {
         (Verdict::Failed, failed_reason(best, least))
     } else if serious > 0 {
@@ -71,6 +82,11 @@ pub fn judge(rivals: &[Rival], hold: &Hold, has_cameras: bool) -> Ruling {
         (Verdict::Aligned, aligned_reason(best, others.first().copied(), hold))
     };
     Ruling { verdict, reason, alternatives }
+}
+
+fn is_serious(rival: &Rival, best: &Rival) -> bool {
+    let share = rival.balance / best.balance;
+    share >= RIVAL_SHARE || share >= COMPARABLE_SHARE && rival.lead_sigmas < LEAST_LEAD_SIGMAS
 }
 
 /// True where two poses differ along what the data hold.
@@ -162,7 +178,7 @@ mod tests {
 
     fn rival(shift: [f64; 3], share: f64, blocked: f64) -> Rival {
         let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
-        Rival { city_from_sfm, share, blocked, balance: share - blocked }
+        Rival { city_from_sfm, share, blocked, balance: share - blocked, lead_sigmas: 5.0 }
     }
 
     /// Two planes that hold everything to 0.05 m, but for the freedom `open`.
@@ -200,6 +216,17 @@ mod tests {
         assert_eq!(other.verdict, Verdict::Ambiguous);
         assert_eq!(other.alternatives.len(), 1);
         assert!(other.alternatives[0].differs.contains("shifted by (4.00, 0.00, 0.00) m"));
+    }
+
+    #[test]
+    fn a_lead_that_chance_explains_is_ambiguous() {
+        let verdict = |share: f64, lead_sigmas: f64| {
+            let behind = Rival { lead_sigmas, ..rival([5.0, 0.0, 0.0], share, 0.0) };
+            judge(&[rival([0.0; 3], 0.8, 0.0), behind], &hold(None), true).verdict
+        };
+        assert_eq!(verdict(0.6, 1.0), Verdict::Ambiguous);
+        assert_eq!(verdict(0.6, 3.0), Verdict::Aligned);
+        assert_eq!(verdict(0.4, 1.0), Verdict::Aligned);
     }
 
     #[test]

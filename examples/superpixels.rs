@@ -132,11 +132,8 @@ fn tallies(scene: &Path, image: &Image, planes: &[Option<PlaneId>]) -> Result<Ta
     let photo = image::open(scene.join("photos").join(&image.name))?.into_rgb8();
     let labels = image::open(scene.join("labels").join(&image.name).with_extension("png"))?.into_luma16();
     let size = photo.dimensions();
-    let seen: Vec<(f64, f64, PlaneId)> = image
-        .observations
-        .iter()
-        .filter_map(|o| Some((o.x_px, o.y_px, planes[o.point?.0 as usize]?)))
-        .collect();
+    let seen: Vec<(f64, f64, PlaneId)> =
+        image.observations.iter().filter_map(|o| Some((o.x_px, o.y_px, planes[o.point?.0 as usize]?))).collect();
     let superpixels = slic(&photo, &SlicOptions::default());
     let ids = labels.as_raw().iter().map(|&id| u32::from(id)).collect();
     let labels = LabelMap { width: labels.width(), height: labels.height(), labels: ids };

@@ -40,6 +40,10 @@ const EXACT: f64 = 1e-11;
 /// The same for more rows than unknowns, which are consistent only as far as their coordinates have digits.
 const CONSISTENT: f64 = 1e-8;
 
+/// ... and what a far image adds, as a share of its distance: nearly parallel planes put poses a million spreads away, where the
+/// terms of a row cancel only to some 1e-15 of their size.
+const FAR_ROUNDING: f64 = 1e-14;
+
 /// Rotations (Frobenius norm) and scales (relative) closer than this are one solution.
 const SAME: f64 = 1e-7;
 
@@ -59,9 +63,9 @@ pub struct Solution {
 /// All poses that satisfy all rows. `normal` may have any length here; equal rows count once.
 pub fn solve(sought: &Sought, rows: &[Row]) -> Result<Vec<Solution>, Degeneracy> {
     let problem = Normalised::new(sought, rows)?;
-    let limit = if problem.rows.len() == sought.unknowns() { EXACT } else { CONSISTENT };
+    let (limit, far) = if problem.rows.len() == sought.unknowns() { (EXACT, FAR_ROUNDING) } else { (CONSISTENT, 0.0) };
     let mut fits: Vec<Fit> = candidates(&problem)?.iter().filter_map(|start| polish(&problem, start)).collect();
-    fits.retain(|fit| fit.scale > 0.0 && fit.residual <= limit * fit.scale.max(1.0));
+    fits.retain(|fit| fit.scale > 0.0 && fit.residual <= limit * fit.scale.max(1.0) + far * fit.translation.norm());
     // Of several approaches to one solution the best stays.
     fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
     let mut isolated: Vec<Solution> = Vec::new();

@@ -79,14 +79,23 @@ struct Interval {
     width: f64,
 }
 
+impl Interval {
+    /// Seen from its other end.
+    fn mirrored(mut self) -> Interval {
+        self.bernstein.reverse();
+        self
+    }
+}
+
 fn in_chart(c: &[f64; 9], reversed: bool, roots: &mut Roots) {
     // Depth first; each halving leaves one interval waiting, and there are at most 21 halvings.
     let mut waiting = [Interval { bernstein: [0.0; 9], at: 0.0, width: 0.0 }; 32];
     waiting[0] = Interval { bernstein: bernstein(c), at: -1.0, width: 2.0 };
     let mut len = 1;
-    // A root at an end belongs to the chart |x| <= |w| alone.
-    for (end, value) in [(-1.0, waiting[0].bernstein[0]), (1.0, waiting[0].bernstein[8])] {
-        if value == 0.0 && !reversed {
+    // A root at an end belongs to the chart |x| <= |w| alone. Axis-aligned boxes have double roots there.
+    let whole = waiting[0];
+    for (end, outward) in [(-1.0, whole), (1.0, whole.mirrored())] {
+        for _ in 0..if reversed { 0 } else { roots_at_start(&outward) } {
             roots.push(reversed, end);
         }
     }
@@ -105,7 +114,7 @@ fn in_chart(c: &[f64; 9], reversed: bool, roots: &mut Roots) {
             }
             _ => {
                 let (left, right) = halves(&interval);
-                if right.bernstein[0] == 0.0 || grazes_at_start(&right) {
+                for _ in 0..roots_at_start(&right) {
                     roots.push(reversed, right.at);
                 }
                 waiting[len] = right;
@@ -147,15 +156,20 @@ fn halves(interval: &Interval) -> (Interval, Interval) {
     (Interval { bernstein: left, at: interval.at, width }, Interval { bernstein: b, at: interval.at + width, width })
 }
 
-/// Whether a complex pair hardly beside the real line stands at the start of an interval: at the border of two halves it
-/// may show in the sign changes of neither. Near such a pair p = (p'' / 2) ((t - at)^2 + k^2), so k^2 = 2 p / p'', where
-/// p'' is 56 times the second difference of the coefficients over the squared width.
+/// Roots at the very start of an interval: one where the polynomial vanishes there, two where it hardly changes besides or
+/// where a complex pair stands hardly beside it. At the border of two halves such a pair may show in the sign changes of neither.
+/// Near it p = (p'' / 2) ((t - at)^2 + k^2), so k^2 = 2 p / p'', where p' is 8 times the first difference of the coefficients over
+/// the width and p'' 56 times the second over its square; from a root at the start the next one is 2 p' / p'' away.
 #[inline]
-fn grazes_at_start(interval: &Interval) -> bool {
+fn roots_at_start(interval: &Interval) -> usize {
     let b = &interval.bernstein;
     let curvature = 56.0 * (b[0] - 2.0 * b[1] + b[2]);
+    if b[0] == 0.0 {
+        let next = 16.0 * b[1].abs() * interval.width;
+        return if next <= NEAREST * curvature.abs() { 2 } else { 1 };
+    }
     let value = 2.0 * b[0] * interval.width * interval.width;
-    value * curvature > 0.0 && value.abs() < NEAREST * NEAREST * curvature.abs()
+    if value * curvature > 0.0 && value.abs() < NEAREST * NEAREST * curvature.abs() { 2 } else { 0 }
 }
 
 /// The root of an interval whose coefficients change sign once.
@@ -314,6 +328,19 @@ mod tests {
             let known = [double, double, [-2.0, 1.0], [0.9, 0.3]];
             let found = real_roots(&with_roots(&known, 1.0));
             assert!(found.iter().any(|r| (r[0] - double[0] * r[1]).abs() < 1e-5), "{double:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_double_root_on_the_border_of_the_charts_is_handed_up_twice() {
+        for double in [[1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]] {
+            for off in [0.0, 3e-17, -3e-17] {
+                let mut octic = with_roots(&[double, double], 1.0);
+                octic[0] += off;
+                let found = real_roots(&octic);
+                let near = found.iter().filter(|r| (r[0] - double[0] * r[1]).abs() < 1e-5).count();
+                assert!(near >= 2, "{double:?} {off}: {found:?}");
+            }
         }
     }
 

@@ -60,6 +60,16 @@ const SAME_SQ: f64 = 1e-14;
 
 /// Rigid poses from six points on planes.
 pub fn se3_6pt(rows: &[Row; 6]) -> Poses {
+    rigid(rows, three_quadrics)
+}
+
+/// The same with every chart asked: for rows on which another solver has found that solutions share a root.
+pub(super) fn se3_6pt_thorough(rows: &[Row; 6]) -> Poses {
+    rigid(rows, three_quadrics_thorough)
+}
+
+#[inline]
+fn rigid(rows: &[Row; 6], intersect: fn(&[Quadric; 3]) -> Intersection) -> Poses {
     let pivot = centroid(rows);
     let mut m = rows.map(|row| {
         let f = form(&row.normal, &(row.point - pivot));
@@ -73,7 +83,7 @@ pub fn se3_6pt(rows: &[Row; 6]) -> Poses {
         return poses;
     }
     let quadrics: [Quadric; 3] = std::array::from_fn(|k| std::array::from_fn(|j| m[3 + k][3 + j]));
-    for q in three_quadrics(&quadrics).iter() {
+    for q in intersect(&quadrics).iter() {
         let mono = monomials(q);
         let right = std::array::from_fn(|i| -(0..10).map(|j| m[i][3 + j] * mono[j]).sum::<f64>());
         poses.push(pose(q, 1.0, back_substitute(&m, right), &pivot));
@@ -83,6 +93,16 @@ pub fn se3_6pt(rows: &[Row; 6]) -> Poses {
 
 /// Similarities from seven points on planes.
 pub fn sim3_7pt(rows: &[Row; 7]) -> Poses {
+    similarities(rows, three_quadrics)
+}
+
+/// The same with every chart asked.
+pub(super) fn sim3_7pt_thorough(rows: &[Row; 7]) -> Poses {
+    similarities(rows, three_quadrics_thorough)
+}
+
+#[inline]
+fn similarities(rows: &[Row; 7], intersect: fn(&[Quadric; 3]) -> Intersection) -> Poses {
     let pivot = centroid(rows);
     let mut m = rows.map(|row| {
         let f = form(&row.normal, &(row.point - pivot));
@@ -95,7 +115,7 @@ pub fn sim3_7pt(rows: &[Row; 7]) -> Poses {
         return poses;
     }
     let quadrics: [Quadric; 3] = std::array::from_fn(|k| std::array::from_fn(|j| m[4 + k][4 + j]));
-    for q in three_quadrics(&quadrics).iter() {
+    for q in intersect(&quadrics).iter() {
         let mono = monomials(q);
         let along: [f64; 4] = std::array::from_fn(|i| (0..10).map(|j| m[i][4 + j] * mono[j]).sum::<f64>());
         let scale = -m[3][3] / along[3];
@@ -173,7 +193,8 @@ pub(super) fn three_quadrics(quadrics: &[Quadric; 3]) -> Intersection {
     found
 }
 
-/// Every real common point that any of the three turnings finds; dearer than `three_quadrics`, for single problems.
+/// Every real common point that any of the three turnings finds; dearer than `three_quadrics`, for single problems and for
+/// samples that are known to be special.
 pub(super) fn three_quadrics_thorough(quadrics: &[Quadric; 3]) -> Intersection {
     let mut found = Intersection { points: [[0.0; 4]; MOST_POSES], len: 0, clean: true };
     let Some(quadrics) = orthonormal(quadrics) else { return found };

@@ -21,8 +21,9 @@
 //!             4. Real roots (polynomial.rs), beta from h, Newton on (alpha, beta).
 //!             5. Substitution gives s, u, w.
 //! Solutions   8 at most, 3 to 5 on average; similarities: those with s > 0, 2.5 to 2.6 on average
-//! Degenerate  where both lines coincide at some root (h = 0: axis-aligned boxes) the octic is blind to beta, and an odd
-//!             number of roots shows that one was lost: the three quadrics (quadrics.rs) take over.
+//! Degenerate  where both lines coincide at some root (h = 0: axis-aligned boxes) the octic is blind to beta; a root that leads
+//!             to no solution of its own, or an odd number of them, shows that some were lost: the three quadrics
+//!             (quadrics.rs) take over, in all their charts.
 //!             Normals that do not span space, coinciding points: no pose is returned
 //! Scaling     differences to p_1; G_1, G_2 orthonormal; all tests are relative
 //! Source      mathematics.md section 5; derived here
@@ -33,6 +34,7 @@
 use super::elimination::eliminate;
 use super::frame::Axes;
 use super::polynomial::real_roots;
+use super::quadrics::{se3_6pt_thorough, sim3_7pt_thorough};
 use super::{MOST_POSES, Poses, RANK_TOLERANCE, Row};
 use crate::geometry::{Rotation3, Similarity, Vector3};
 
@@ -49,6 +51,9 @@ const MOST_STEPS: usize = 25;
 /// Largest value of the two orthonormal bilinear equations at an accepted pair of angles.
 const RESIDUAL: f64 = 1e-11;
 
+/// Farthest that Newton travels from a root that stands for one solution, in cosines and sines.
+const NEAR: f64 = 1e-3;
+
 /// Angles closer than this (squared distance of cosines and sines) are one solution: nearly double roots cannot be told
 /// apart beyond the square root of the precision.
 const SAME_SQ: f64 = 1e-14;
@@ -56,7 +61,7 @@ const SAME_SQ: f64 = 1e-14;
 /// cos alpha, sin alpha, cos beta, sin beta.
 type Angles = [f64; 4];
 
-/// Pairs of angles, and whether every root of the octic led to one.
+/// Pairs of angles, and whether every root of the octic led to one of its own.
 struct Found {
     angles: [Angles; MOST_POSES],
     len: usize,
@@ -76,7 +81,7 @@ struct Pair {
 pub fn se3_pair_4pt(rows: &[Row; 6]) -> Poses {
     match from_two_angles(rows) {
         Some(poses) => poses,
-        None => super::quadrics::se3_6pt(rows),
+        None => se3_6pt_thorough(rows),
     }
 }
 
@@ -84,7 +89,7 @@ pub fn se3_pair_4pt(rows: &[Row; 6]) -> Poses {
 pub fn sim3_pair_5pt(rows: &[Row; 7]) -> Poses {
     match scaled_from_two_angles(rows) {
         Some(poses) => poses,
-        None => super::quadrics::sim3_7pt(rows),
+        None => sim3_7pt_thorough(rows),
     }
 }
 
@@ -194,14 +199,21 @@ fn angles(first: &Columns, second: &Columns) -> Option<Found> {
     }
     let lines = [quadratic_lines(&first), quadratic_lines(&second)];
     for root in real_roots(&octic(&lines)).iter() {
-        match meeting(&lines, root).map(|start| newton(&first, &second, start)) {
-            Some(Some(solution)) => found.keep(solution),
-            Some(None) => {}
+        let start = meeting(&lines, root);
+        match start.and_then(|start| newton(&first, &second, start)) {
+            Some(solution) => found.complete &= found.keep(solution) && start.is_some_and(|s| is_near(&s, &solution)),
             None => found.complete = false,
         }
     }
     // Real roots come in pairs. An odd number means that one was lost or that two have merged.
     (found.complete && found.len.is_multiple_of(2)).then_some(found)
+}
+
+/// A root of the octic is as good as its digits. One from which Newton travels knew alpha but not beta: two solutions share
+/// that alpha, and the other one would be lost.
+#[inline]
+fn is_near(start: &Angles, solution: &Angles) -> bool {
+    (0..4).all(|i| (start[i] - solution[i]).abs() < NEAR)
 }
 
 #[inline]
@@ -296,12 +308,15 @@ fn newton(first: &Columns, second: &Columns, start: Angles) -> Option<Angles> {
 }
 
 impl Found {
-    fn keep(&mut self, solution: Angles) {
+    /// False where the solution was there already.
+    fn keep(&mut self, solution: Angles) -> bool {
         let same =
             |other: &Angles| (0..4).map(|i| (other[i] - solution[i]) * (other[i] - solution[i])).sum::<f64>() < SAME_SQ;
-        if self.len < MOST_POSES && !self.angles[..self.len].iter().any(same) {
+        let new = self.len < MOST_POSES && !self.angles[..self.len].iter().any(same);
+        if new {
             self.angles[self.len] = solution;
             self.len += 1;
         }
+        new
     }
 }

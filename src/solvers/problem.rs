@@ -17,7 +17,8 @@
 //!         | { "refused": "degenerate: reason" }  | { "refused": "ill-formed: reason" }
 //! ```
 //!
-//! An empty list of solutions is an answer: the problem is sound and has no real pose. Further keys are ignored.
+//! An empty list of solutions is an answer: the problem is sound and has no real pose. Further keys are ignored. The same as a JSON
+//! schema, the answer included: `assets/problem.schema.json` (tests/problem_schema.rs holds it to the golden problems).
 
 use super::primitives::{ObjectPrimitive, PrimitiveError, SensorPrimitive, rows_of};
 use super::{Degeneracy, Row, Solution, Sought, Up, solve};

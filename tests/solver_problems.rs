@@ -542,7 +542,7 @@ fn aligned_problem(chance: &mut Chance, sought: &Sought, points: &[usize], varia
         let first = chance.on_plane(&plane);
         for k in 0..count {
             let mut x = if k == 0 { first } else { chance.on_plane(&plane) };
-            if k == 1 && variant % 2 == 0 {
+            if k == 1 && variant.is_multiple_of(2) {
                 x = first;
                 x[(i + 1 + (chance.uniform() * 2.0) as usize) % 3] += 10.0 + 30.0 * chance.uniform();
             }

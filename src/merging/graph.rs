@@ -1,7 +1,7 @@
 //! All parts at once: which edges hold, where every part stands.
 //!
 //! Method       the strongest edges that join everything (greatest spanning tree by inliers) give the start; every further edge closes
-//!              a cycle and must agree with it; then all similarities are adjusted together to all edges that agree, each with its
+//!              a cycle and must agree with it, or the edge that the others contradict is left out by name; then all similarities are adjusted together to all edges that agree, each with its
 //!              own information (Gauss-Newton, weights that bound an edge's pull)
 
 use nalgebra::{DMatrix, DVector};
@@ -10,11 +10,13 @@ use super::judge::Opinion;
 use super::pairwise::{Edge, EdgeSource, Link};
 use super::sigma::extent;
 use super::{MergeVerdict, Part, PartPlace};
-use crate::geometry::Similarity;
+use crate::geometry::{Point3, Similarity};
 use crate::robust::{Chart, Vector7};
 
 /// A cycle that does not close to this share of the scene's radius has a wrong edge in it.
 const CYCLE_GAP: f64 = 0.05;
+/// What an edge of a cycle with an unknown wrong edge is told by.
+const CYCLE_OPEN: &str = "a cycle does not close";
 /// An edge further off than this many sigmas pulls no harder.
 const EDGE_GATE: f64 = 5.0;
 const ROUNDS: usize = 20;
@@ -32,9 +34,13 @@ pub(super) struct Solved {
 
 pub(super) fn solve(parts: &[Part], order: &[usize], mut links: Vec<Link>) -> Solved {
     let has_anchors = parts.iter().any(|p| p.anchor.is_some());
-    let mut poses = anchored(parts);
-    spread(&mut poses, &links, parts, order);
-    check_cycles(&poses, &mut links);
+    let place = |links: &[Link]| {
+        let mut poses = anchored(parts);
+        spread(&mut poses, links, parts, order);
+        poses
+    };
+    let mut poses = settle(&mut links, parts, &place);
+    retire_unplaced(&poses, &mut links);
     adjust(&mut poses, &links, parts);
     let candidates = candidates(parts, &poses, &links);
     let frame = if has_anchors && parts.iter().zip(&poses).any(|(p, t)| p.anchor.is_some() && t.is_some()) {
@@ -110,19 +116,93 @@ fn gap(link: &Link, a: &Similarity, b: &Similarity) -> Option<(Vector7, f64)> {
     Some((Vector7::from_column_slice(&[turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, scale]), radius))
 }
 
-fn check_cycles(poses: &[Option<Similarity>], links: &mut [Link]) {
+/// How far a motion carries a scene, as a share of its radius: turned, shifted and scaled.
+fn motion_share(motion: &Similarity, center: &Point3<f64>, radius: f64) -> f64 {
+    let shift = (motion.apply(center) - center).norm() / radius;
+    motion.rotation.angle().hypot(shift).hypot(motion.scale.ln())
+}
+
+/// The edges in use that do not close their cycle.
+fn contradictions(poses: &[Option<Similarity>], links: &[Link]) -> Vec<usize> {
+    let is_open = |l: &Link| gap_share(poses, l).is_some_and(|share| share > CYCLE_GAP);
+    (0..links.len()).filter(|&i| links[i].edge.used && is_open(&links[i])).collect()
+}
+
+fn gap_share(poses: &[Option<Similarity>], link: &Link) -> Option<f64> {
+    let (unknowns, radius) = gap(link, &poses[link.edge.a]?, &poses[link.edge.b]?)?;
+    Some(unknowns.norm() / radius)
+}
+
+/// Places the parts without the edges that contradict the others. A cycle that does not close says that one of its edges is
+/// wrong, but only the other cycles say which one: where several are as likely, the parts whose place hangs on the choice
+/// get none. `place` carries places along the edges in use.
+fn settle(
+    links: &mut [Link],
+    parts: &[Part],
+    place: &dyn Fn(&[Link]) -> Vec<Option<Similarity>>,
+) -> Vec<Option<Similarity>> {
+    let mut poses = place(links);
+    let mut doubtful = vec![false; parts.len()];
+    while !contradictions(&poses, links).is_empty() {
+        let suspects = suspects(links, &poses, place);
+        let Some((weakest, settled)) = suspects.first().cloned() else { break };
+        for (_, other) in &suspects[1..] {
+            (0..parts.len()).for_each(|p| doubtful[p] |= differs(&parts[p], settled[p], other[p]));
+        }
+        let edge = &mut links[weakest].edge;
+        edge.used = false;
+        let names = format!("{} and {}", parts[edge.a].name, parts[edge.b].name);
+        let share = gap_share(&settled, &links[weakest]).unwrap_or(f64::INFINITY);
+        links[weakest].edge.reason = Some(match suspects.len() {
+            1 => format!("puts {names} {:.1} % of the extent off from where the other edges put them", 50.0 * share),
+            n => format!(
+                "{CYCLE_OPEN}: the edges round {names} disagree by {:.1} % of the extent, and any of {n} may be the wrong one; \
+                 a further shared photograph would tell",
+                50.0 * share
+            ),
+        });
+        poses = settled;
+    }
+    (0..parts.len()).map(|p| poses[p].filter(|_| !doubtful[p])).collect()
+}
+
+/// The edges without which fewest contradictions are left, the weakest first, each with the places that the others give.
+fn suspects(
+    links: &[Link],
+    poses: &[Option<Similarity>],
+    place: &dyn Fn(&[Link]) -> Vec<Option<Similarity>>,
+) -> Vec<(usize, Vec<Option<Similarity>>)> {
+    let placed = |poses: &[Option<Similarity>]| poses.iter().flatten().count();
+    let mut trials = Vec::new();
+    for index in (0..links.len()).filter(|&i| links[i].edge.used) {
+        let mut others = links.to_vec();
+        others[index].edge.used = false;
+        let without = place(&others);
+        // An edge without which a part has no place at all is in no cycle.
+        let is_in_cycle = placed(&without) == placed(poses);
+        // One that agrees with the places of the others is not to blame.
+        let is_off = gap_share(&without, &links[index]).is_some_and(|share| share > CYCLE_GAP);
+        if is_in_cycle && is_off {
+            trials.push((contradictions(&without, &others).len(), links[index].edge.inliers, index, without));
+        }
+    }
+    trials.sort_by_key(|(left, inliers, index, _)| (*left, *inliers, *index));
+    let fewest = trials.first().map(|t| t.0);
+    trials.into_iter().filter(|t| Some(t.0) == fewest).map(|(_, _, index, without)| (index, without)).collect()
+}
+
+fn differs(part: &Part, one: Option<Similarity>, other: Option<Similarity>) -> bool {
+    let (Some(one), Some(other)) = (one, other) else { return one.is_some() != other.is_some() };
+    let (center, radius) = extent(&part.sfm.points);
+    motion_share(&(one.inverse() * other), &center, radius) > CYCLE_GAP
+}
+
+/// Edges whose parts were not placed carry nothing.
+fn retire_unplaced(poses: &[Option<Similarity>], links: &mut [Link]) {
     for link in links.iter_mut().filter(|l| l.edge.used) {
-        let (Some(a), Some(b)) = (poses[link.edge.a], poses[link.edge.b]) else {
+        if poses[link.edge.a].is_none() || poses[link.edge.b].is_none() {
             link.edge.used = false;
             link.edge.reason = Some("its parts belong to another group than the one that was placed".into());
-            continue;
-        };
-        let Some((unknowns, radius)) = gap(link, &a, &b) else { continue };
-        let share = unknowns.norm() / radius;
-        if share > CYCLE_GAP {
-            link.edge.used = false;
-            let reason = format!("contradicts the stronger edges by {:.1} % of the extent", 50.0 * share);
-            link.edge.reason = Some(reason);
         }
     }
 }
@@ -248,6 +328,10 @@ fn verdict(places: &[PartPlace], links: &[Link], parts: &[Part]) -> (MergeVerdic
             format!("{placed} of {} parts are joined; left out: {}", places.len(), names()),
         );
     }
+    let in_cycle = |l: &&Link| l.edge.reason.as_ref().is_some_and(|r| r.starts_with(CYCLE_OPEN));
+    if let Some(reason) = links.iter().find(in_cycle).and_then(|l| l.edge.reason.clone()) {
+        return (MergeVerdict::Ambiguous, reason);
+    }
     let open = links.iter().any(|l| matches!(l.opinion, Opinion::Open(_)));
     let loose_anchor = parts.iter().any(|p| p.anchor.as_ref().is_some_and(|a| !a.determined));
     if open || loose_anchor {
@@ -283,4 +367,121 @@ fn edges(parts: &[Part], poses: &[Option<Similarity>], links: Vec<Link>) -> Vec<
     edges.iter_mut().for_each(|e| (e.a, e.b) = (e.a.min(e.b), e.a.max(e.b)));
     edges.sort_by_key(|e| (e.a, e.b));
     edges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Rotation3, Vector3};
+    use crate::merging::fit::Fit;
+    use crate::reconstruction::Reconstruction;
+    use crate::robust::Matrix7;
+
+    /// A cloud of radius about one, the same in the world for all parts.
+    fn part(k: usize) -> Part {
+        let wave = |i: usize, step: f64| 2.0 * (i as f64 * step).fract() - 1.0;
+        let x = |i: usize| Point3::new(wave(i, 0.754_877_666), wave(i, 0.569_840_291), wave(i, 0.381_966));
+        let points = (0..100 + k).map(|i| world_from_part(k).inverse().apply(&x(i))).collect();
+        let sfm = Reconstruction { points, ..Reconstruction::default() };
+        Part { name: format!("part {k}"), sfm, superpixels: None, anchor: None }
+    }
+
+    fn world_from_part(k: usize) -> Similarity {
+        let t = k as f64;
+        Similarity {
+            scale: 1.0 + 0.3 * t,
+            rotation: Rotation3::from_euler_angles(0.3 * t, -0.2 * t, 0.9 * t),
+            translation: Vector3::new(t, -2.0 * t, 0.5),
+        }
+    }
+
+    fn link(a: usize, b: usize, inliers: usize, error: &Similarity) -> Link {
+        let edge = Edge {
+            a,
+            b,
+            source: EdgeSource::Tracks,
+            shared_photos: vec!["x.jpg".into()],
+            pairs: inliers,
+            inliers,
+            rms: 0.01,
+            used: true,
+            reason: None,
+        };
+        let chart = Chart {
+            center: world_from_part(a).inverse().apply(&Point3::origin()),
+            radius: 1.7 / world_from_part(a).scale,
+        };
+        let fit = Fit {
+            a_from_b: world_from_part(a).inverse() * *error * world_from_part(b),
+            chart,
+            information: Matrix7::identity() * 1e6,
+            bend: 1e-3,
+            inliers: vec![true; inliers],
+            rms: 0.01,
+            cameras_used: Vec::new(),
+        };
+        Link { edge, fit: Some(fit), opinion: Opinion::Together }
+    }
+
+    fn shifted(along_x: f64) -> Similarity {
+        Similarity { translation: Vector3::new(along_x, 0.0, 0.0), ..Similarity::identity() }
+    }
+
+    fn solved(count: usize, links: Vec<Link>) -> Solved {
+        let parts: Vec<Part> = (0..count).map(part).collect();
+        let order: Vec<usize> = (0..count).rev().collect();
+        solve(&parts, &order, links)
+    }
+
+    fn assert_placed(found: &Solved, parts: &[usize]) {
+        let x = Point3::new(0.2, -0.4, 0.7);
+        let root = world_from_part(parts[0]).inverse();
+        for &p in parts {
+            let pose = found.places[p].merged_from_part.expect("placed");
+            let off = pose.apply(&world_from_part(p).inverse().apply(&x)) - root.apply(&x);
+            assert!(off.norm() < 1e-6, "part {p} is {} off", off.norm());
+        }
+    }
+
+    #[test]
+    fn names_the_wrong_edge_though_it_is_the_strongest() {
+        let mut links = Vec::new();
+        for (a, b) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+            let wrong = (a, b) == (1, 2);
+            links.push(link(a, b, if wrong { 900 } else { 100 }, &shifted(if wrong { 0.8 } else { 0.0 })));
+        }
+        let found = solved(4, links);
+        assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
+        assert_placed(&found, &[0, 1, 2, 3]);
+        let unused: Vec<&Edge> = found.edges.iter().filter(|e| !e.used).collect();
+        assert_eq!(unused.len(), 1);
+        let reason = unused[0].reason.clone().unwrap();
+        assert!(reason.contains("part 1 and part 2") && reason.contains('%'), "{reason}");
+    }
+
+    #[test]
+    fn does_not_choose_which_edge_of_a_lone_cycle_is_wrong() {
+        let ring = [(0, 1), (1, 2), (2, 3), (0, 3)];
+        let links = ring.iter().map(|&(a, b)| link(a, b, 100 + b, &shifted(if a == 1 { 0.8 } else { 0.0 })));
+        let found = solved(4, links.collect());
+        assert_eq!(found.verdict, MergeVerdict::Ambiguous, "{}", found.reason);
+        assert!(found.places.iter().filter(|p| p.merged_from_part.is_some()).count() < 2);
+    }
+
+    #[test]
+    fn carries_places_along_a_chain_of_five() {
+        let links = (0..4).map(|a| link(a, a + 1, 50 + a, &shifted(0.0))).collect();
+        let found = solved(5, links);
+        assert_eq!(found.verdict, MergeVerdict::Merged);
+        assert_placed(&found, &[0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn places_the_larger_of_two_islands() {
+        let links = vec![link(0, 1, 500, &shifted(0.0)), link(2, 3, 50, &shifted(0.0)), link(3, 4, 50, &shifted(0.0))];
+        let found = solved(5, links);
+        assert_eq!(found.verdict, MergeVerdict::Partial);
+        assert_placed(&found, &[2, 3, 4]);
+        assert!(found.places[0].merged_from_part.is_none() && found.places[0].reason.is_some());
+    }
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 use cityweld::city::{CityOptions, read_city};
 use cityweld::export::{CityCounts, InputSummary, SfmCounts, write_alignment};
 use cityweld::format::read_start;
-use cityweld::imagery::{SlicOptions, SuperpixelSource, lift_superpixels};
+use cityweld::imagery::{SuperpixelOptions, SuperpixelSource, lift_superpixels};
 use cityweld::reconstruction::read_reconstruction;
 use cityweld::{AlignOptions, Up, align};
 
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let city = read_city(&sample.join("city.obj"), &[], &CityOptions::default())?;
     let sfm = read_reconstruction(&sample.join("sfm"))?;
     let labels = SuperpixelSource::Labels(sample.join("labels"));
-    let superpixels = lift_superpixels(&sfm, &labels, &SlicOptions::default(), &|_, _| ())?;
+    let superpixels = lift_superpixels(&sfm, &labels, &SuperpixelOptions::default(), &|_, _| ())?;
     let start = read_start(&sample.join("start.json"))?;
 
     let options = AlignOptions { start, fixed_scale: None, up: Up::Auto, seed: 0 };

@@ -1,6 +1,7 @@
 //! How well superpixels keep to the planes of a city: for scenes with truth, how many observations lie in a superpixel whose
-//! majority plane is another than their own; for the superpixels of the photographs, for a regular grid with as many cells,
-//! and for the labels that come with the scene.
+//! majority plane is another than their own; for the superpixels of the photographs (which know where the keypoints are, not what
+//! they belong to), for a regular grid with as many cells, for superpixels that know the colours alone, and for the labels that
+//! come with the scene.
 //!
 //!     cargo run --release --example superpixels -- SCENE...
 //!
@@ -13,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use cityweld::city::{CityModel, CityOptions, FacetId, read_city};
 use cityweld::geometry::{Matrix3, Point3, Similarity, Vector3};
-use cityweld::imagery::{LabelMap, SlicOptions, slic};
+use cityweld::imagery::{LabelMap, SuperpixelOptions, cut_superpixels};
 use cityweld::planes::{CityPlanes, PlaneId, city_planes};
 use cityweld::reconstruction::{Image, Reconstruction, read_reconstruction};
 use rayon::prelude::*;
@@ -32,8 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if scenes.is_empty() {
         return Err("give the folders of scenes: superpixels SCENE...".into());
     }
-    println!("| scene | observations | superpixels a photo | share | grid | ratio | labels | their grid |");
-    println!("|---|---|---|---|---|---|---|---|");
+    println!(
+        "| scene | observations | superpixels a photo | share | grid | ratio | colours alone | ratio | labels | their grid |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for scene in &scenes {
         for (name, truth) in truths(scene)? {
             measure(scene, &name, &truth)?;
@@ -76,14 +79,17 @@ fn measure(scene: &Path, name: &str, city_from_sfm: &Similarity) -> Result<(), B
     let sum = |of: fn(&Tallies) -> Tally| photos.iter().map(of).fold(Tally::default(), Tally::plus);
     let [ours, grid, labels, labels_grid] =
         [sum(|t| t.superpixels), sum(|t| t.grid), sum(|t| t.labels), sum(|t| t.labels_grid)];
+    let colours = sum(|t| t.colours);
     println!(
-        "| {} {name} | {} | {:.0} | {:.2} % | {:.2} % | {:.3} | {:.2} % | {:.2} % |",
+        "| {} {name} | {} | {:.0} | {:.2} % | {:.2} % | {:.3} | {:.2} % | {:.3} | {:.2} % | {:.2} % |",
         scene.file_name().unwrap_or_default().display(),
         ours.observations,
         ours.cells as f64 / photos.len() as f64,
         100.0 * ours.share(),
         100.0 * grid.share(),
         ours.share() / grid.share(),
+        100.0 * colours.share(),
+        colours.share() / grid.share(),
         100.0 * labels.share(),
         100.0 * labels_grid.share(),
     );
@@ -123,6 +129,8 @@ impl Tally {
 
 struct Tallies {
     superpixels: Tally,
+    /// The same without knowing where the photograph has keypoints.
+    colours: Tally,
     grid: Tally,
     labels: Tally,
     labels_grid: Tally,
@@ -134,15 +142,18 @@ fn tallies(scene: &Path, image: &Image, planes: &[Option<PlaneId>]) -> Result<Ta
     let size = photo.dimensions();
     let seen: Vec<(f64, f64, PlaneId)> =
         image.observations.iter().filter_map(|o| Some((o.x_px, o.y_px, planes[o.point?.0 as usize]?))).collect();
-    let superpixels = slic(&photo, &SlicOptions::default());
+    let with_points = image.observations.iter().filter(|o| o.point.is_some());
+    let keypoints: Vec<(f64, f64)> = with_points.map(|o| (o.x_px, o.y_px)).collect();
+    let cut = |keypoints: &[(f64, f64)]| cut_superpixels(&photo, keypoints, &SuperpixelOptions::default());
     let ids = labels.as_raw().iter().map(|&id| u32::from(id)).collect();
     let labels = LabelMap { width: labels.width(), height: labels.height(), labels: ids };
-    let [superpixels, labels] = [superpixels, labels].map(|map| (tally(&map, size, &seen), map));
+    let [superpixels, colours, labels] = [cut(&keypoints), cut(&[]), labels].map(|map| tally(&map, size, &seen));
     Ok(Tallies {
-        superpixels: superpixels.0,
-        grid: tally(&grid(size, superpixels.0.cells), size, &seen),
-        labels: labels.0,
-        labels_grid: tally(&grid(size, labels.0.cells), size, &seen),
+        superpixels,
+        colours,
+        grid: tally(&grid(size, superpixels.cells), size, &seen),
+        labels,
+        labels_grid: tally(&grid(size, labels.cells), size, &seen),
     })
 }
 

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use cityweld::city::{CityModel, read_city};
 use cityweld::export::{CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, write_alignment};
-use cityweld::imagery::{LiftedSuperpixels, SlicOptions, lift_superpixels};
+use cityweld::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
 use cityweld::reconstruction::{Reconstruction, read_reconstruction};
 use cityweld::verdict::Verdict;
 
@@ -61,7 +61,7 @@ impl Inputs {
             None => None,
             Some(source) => {
                 let progress = |done, all| voice.bar.show("superpixels", done, all);
-                let lifted = lift_superpixels(&sfm, source, &SlicOptions::default(), &progress)?;
+                let lifted = lift_superpixels(&sfm, source, &SuperpixelOptions::default(), &progress)?;
                 voice.detail(&format!("superpixels: {}", lifted.superpixels.len()));
                 Some(lifted)
             }

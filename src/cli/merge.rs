@@ -6,7 +6,7 @@ use anyhow::{Context, Result, ensure};
 use cityweld::city::{CityModel, read_city};
 use cityweld::export::{OutputKind, merge_report, write_merge};
 use cityweld::format::read_start;
-use cityweld::imagery::{ImageryError, SlicOptions, SuperpixelSource, lift_superpixels};
+use cityweld::imagery::{ImageryError, SuperpixelOptions, SuperpixelSource, lift_superpixels};
 use cityweld::merging::{Anchor, Merge, MergeOptions, MergeVerdict, Part, merge};
 use cityweld::reconstruction::read_reconstruction;
 use cityweld::verdict::Verdict;
@@ -89,7 +89,7 @@ fn read_parts(args: &MergeArgs, city: Option<&CityModel>, session: &Session) -> 
         let source = labels.or_else(|| args.photos.clone().map(SuperpixelSource::Photos));
         let superpixels = match source.filter(|_| city.is_some()) {
             None => None,
-            Some(source) => match lift_superpixels(&sfm, &source, &SlicOptions::default(), &|_, _| ()) {
+            Some(source) => match lift_superpixels(&sfm, &source, &SuperpixelOptions::default(), &|_, _| ()) {
                 // Only shared photographs matter; a part without any file there has nothing to add.
                 Err(ImageryError::NothingFound { .. } | ImageryError::NoImages { .. }) => None,
                 lifted => Some(without_missing(lifted?)),

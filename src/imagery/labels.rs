@@ -20,9 +20,14 @@ impl LabelMap {
     /// The label under a point of an image of `image_size` (width, height), to which this map is scaled by nearest
     /// neighbour; 0 where there is none, `None` outside the image.
     pub fn label_at(&self, x_px: f64, y_px: f64, image_size: (u32, u32)) -> Option<u32> {
+        self.labels.get(self.index_at(x_px, y_px, image_size)?).copied()
+    }
+
+    /// The index of that pixel.
+    pub(super) fn index_at(&self, x_px: f64, y_px: f64, image_size: (u32, u32)) -> Option<usize> {
         let column = scaled_index(x_px, image_size.0, self.width)?;
         let row = scaled_index(y_px, image_size.1, self.height)?;
-        self.labels.get(row * self.width as usize + column).copied()
+        Some(row * self.width as usize + column)
     }
 }
 

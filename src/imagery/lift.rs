@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::files::{find_labels, find_photo};
 use super::labels::read_labels;
 use super::photos::read_photo;
-use super::slic::{SlicOptions, slic};
+use super::superpixels::{SuperpixelOptions, cut_superpixels};
 use super::{ImageryError, ImageryWarning, LabelMap, SuperpixelSource};
 use crate::geometry::Camera;
 use crate::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
@@ -40,7 +40,7 @@ pub struct LiftedSuperpixels {
 pub fn lift_superpixels(
     reconstruction: &Reconstruction,
     source: &SuperpixelSource,
-    options: &SlicOptions,
+    options: &SuperpixelOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<LiftedSuperpixels, ImageryError> {
     let files = find_files(reconstruction, source)?;
@@ -117,7 +117,7 @@ fn lift_image(
     index: ImageIndex,
     path: &Path,
     source: &SuperpixelSource,
-    options: &SlicOptions,
+    options: &SuperpixelOptions,
 ) -> Result<LiftedImage, ImageryError> {
     let image = &reconstruction.images[index.0 as usize];
     let camera = reconstruction.cameras.get(image.camera.0 as usize);
@@ -133,12 +133,20 @@ fn lift_image(
             let found = photo.pixels.dimensions();
             let image_size = size_in_camera(camera, found, source.noun(), path)?;
             let scaled = (found != image_size).then_some((found, image_size));
-            (slic(&photo.pixels, options), photo.truncated, scaled, image_size)
+            let keypoints = keypoints_in(image, image_size, found);
+            (cut_superpixels(&photo.pixels, &keypoints, options), photo.truncated, scaled, image_size)
         }
     };
     let (superpixels, observations_outside) = points_on_labels(index, image, &map, image_size);
     let truncated = truncated.then(|| path.to_path_buf());
     Ok(LiftedImage { index, superpixels, truncated, scaled, observations_outside })
+}
+
+/// The observations that have points, scaled from the image of `image_size` to a picture of `size`.
+fn keypoints_in(image: &Image, image_size: (u32, u32), size: (u32, u32)) -> Vec<(f64, f64)> {
+    let (across, down) = (f64::from(size.0) / f64::from(image_size.0), f64::from(size.1) / f64::from(image_size.1));
+    let observed = image.observations.iter().filter(|observation| observation.point.is_some());
+    observed.map(|observation| (observation.x_px * across, observation.y_px * down)).collect()
 }
 
 /// Share by which the shape (width over height) of a picture may stray from its camera's: scaling rounds to whole pixels.
@@ -255,7 +263,7 @@ mod tests {
         let images = vec![image("a.jpg", &seen_a), image("sub/b.jpg", &seen_b), image("c.jpg", &[(0.5, 0.5, Some(0))])];
         let reconstruction = Reconstruction { images, ..Reconstruction::default() };
         let source = SuperpixelSource::Labels(folder.path().to_path_buf());
-        let lifted = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap();
+        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap();
         let flat: Vec<_> = lifted
             .superpixels
             .iter()
@@ -283,7 +291,7 @@ mod tests {
         let images = vec![image("a.jpg", &[(99.9, 60.0, Some(0)), (100.0, 60.0, Some(1))])];
         let reconstruction = Reconstruction { images, cameras: vec![camera(200, 100)], ..Reconstruction::default() };
         let source = SuperpixelSource::Labels(folder.path().to_path_buf());
-        let lifted = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap();
+        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap();
         let flat: Vec<_> = lifted.superpixels.iter().map(|s| (s.label, s.points.clone())).collect();
         assert_eq!(flat, vec![(7, vec![PointIndex(0)]), (8, vec![PointIndex(1)])]);
         assert_eq!(lifted.warnings, vec![]);
@@ -296,7 +304,7 @@ mod tests {
         let images = vec![image("a.jpg", &[(600.0, 400.0, Some(0))])];
         let reconstruction = Reconstruction { images, cameras: vec![camera(640, 480)], ..Reconstruction::default() };
         let source = SuperpixelSource::Photos(folder.path().to_path_buf());
-        let lifted = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap();
+        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap();
         assert_eq!(lifted.superpixels.len(), 1);
         let scaled =
             ImageryWarning::Scaled { count: 1, example: "a.jpg".to_owned(), found: (64, 48), camera: (640, 480) };
@@ -312,7 +320,7 @@ mod tests {
         let cameras = vec![camera(200, 100), camera(100, 200)];
         let reconstruction = Reconstruction { images: vec![turned], cameras, ..Reconstruction::default() };
         let source = SuperpixelSource::Labels(folder.path().to_path_buf());
-        let error = lift_superpixels(&reconstruction, &source, &SlicOptions::default(), &|_, _| ()).unwrap_err();
+        let error = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap_err();
         assert!(matches!(error, ImageryError::WrongShape { turned: true, .. }), "{error}");
     }
 

@@ -1,0 +1,304 @@
+//! Superpixels of a photograph: pieces that each show, as well as colours can tell, one plane.
+//!
+//! Method       Cells ([`slic`]) are merged, always the pair that costs least, until as many are left as asked for. The cost grows
+//!              with what the merged superpixel would hold (Ward 1963: one that holds much must not become uneven), with the
+//!              difference of the mean colours and with the contrast across the common border, and falls with the border's
+//!              length, so that pieces grow round instead of long. What a superpixel holds are its pixels, and the keypoints in it:
+//!              where the photograph has many of them, superpixels stay small, and few points are lost with one that bends.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use image::RgbImage;
+
+use super::LabelMap;
+use super::colour::{Colour, LabImage, distance};
+use super::slic::{Cells, slic};
+
+/// How photographs are cut into superpixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SuperpixelOptions {
+    /// As many are left of each photograph.
+    pub count: usize,
+}
+
+impl Default for SuperpixelOptions {
+    fn default() -> SuperpixelOptions {
+        SuperpixelOptions { count: 150 }
+    }
+}
+
+/// By which power the cost grows with the harmonic mean of what the two hold; Ward's 1 lets small pieces stay too long.
+const MASS_POWER: f32 = 1.25;
+/// Weight of the contrast across the border against the difference of the mean colours.
+const BORDER_WEIGHT: f32 = 2.0;
+/// Contrast is taken between the pixels this far behind the border on either side, since edges are two pixels wide.
+const BEHIND_BORDER_PX: usize = 1;
+
+/// Cuts a photograph into connected superpixels with the labels 1, 2, ...; `keypoints` are places (x, y) in the photograph,
+/// in pixels, where it shows points. The map may be smaller than the photograph.
+pub fn cut_superpixels(photo: &RgbImage, keypoints: &[(f64, f64)], options: &SuperpixelOptions) -> LabelMap {
+    let image = LabImage::of(photo);
+    if image.pixels.is_empty() {
+        return LabelMap { width: photo.width(), height: photo.height(), labels: Vec::new() };
+    }
+    let cells = slic(&image);
+    let mut merging = Merging::new(&image, &cells);
+    merging.add_keypoints(&cells, &keypoint_pixels(&image, photo.dimensions(), keypoints));
+    let labels = merging.down_to(options.count);
+    let labels = cells.of_pixel.iter().map(|&cell| labels[cell as usize]).collect();
+    LabelMap { width: image.width as u32, height: image.height as u32, labels }
+}
+
+/// Indices of the pixels under the keypoints; those outside are left out.
+fn keypoint_pixels(image: &LabImage, size: (u32, u32), keypoints: &[(f64, f64)]) -> Vec<usize> {
+    let indices = LabelMap { width: image.width as u32, height: image.height as u32, labels: Vec::new() };
+    keypoints.iter().filter_map(|&(x, y)| indices.index_at(x, y, size)).collect()
+}
+
+/// A superpixel as it grows.
+struct Region {
+    /// Pixels, and keypoints in pixels' worth.
+    mass: f32,
+    pixels: f32,
+    colour_sum: Colour,
+    /// To every neighbour, one each.
+    borders: Vec<Border>,
+    /// Counts the changes, which make costs outdated.
+    version: u32,
+    /// What it has been merged into.
+    part_of: Option<u32>,
+}
+
+#[derive(Clone, Copy)]
+struct Border {
+    with: u32,
+    length_px: f32,
+    contrast_sum: f32,
+}
+
+struct Merging {
+    regions: Vec<Region>,
+    /// The cheapest first: cost (its bits, which order as it does), the pair, and the versions for which it holds.
+    queue: BinaryHeap<Reverse<(u32, [u32; 2], [u32; 2])>>,
+}
+
+impl Merging {
+    fn new(image: &LabImage, cells: &Cells) -> Merging {
+        let empty =
+            || Region { mass: 0.0, pixels: 0.0, colour_sum: [0.0; 3], borders: Vec::new(), version: 0, part_of: None };
+        let mut regions: Vec<Region> = std::iter::repeat_with(empty).take(cells.count).collect();
+        for (pixel, &cell) in image.pixels.iter().zip(&cells.of_pixel) {
+            let region = &mut regions[cell as usize];
+            region.mass += 1.0;
+            region.pixels += 1.0;
+            add(&mut region.colour_sum, pixel);
+        }
+        for ([a, b], border) in borders(image, cells) {
+            regions[a as usize].borders.push(Border { with: b, ..border });
+            regions[b as usize].borders.push(Border { with: a, ..border });
+        }
+        Merging { regions, queue: BinaryHeap::new() }
+    }
+
+    /// All keypoints together weigh as much as all pixels.
+    fn add_keypoints(&mut self, cells: &Cells, pixels: &[usize]) {
+        let mass = cells.of_pixel.len() as f32 / pixels.len() as f32;
+        for &pixel in pixels {
+            self.regions[cells.of_pixel[pixel] as usize].mass += mass;
+        }
+    }
+
+    /// Merges until `count` are left, or nothing touches; the label of each cell.
+    fn down_to(mut self, count: usize) -> Vec<u32> {
+        for region in 0..self.regions.len() as u32 {
+            self.queue_borders(region, |with| with > region);
+        }
+        let mut left = self.regions.len();
+        while left > count.max(1) {
+            let Some(Reverse((_, [a, b], versions))) = self.queue.pop() else { break };
+            let holds = [a, b].iter().zip(versions).all(|(&region, version)| {
+                let region = &self.regions[region as usize];
+                region.part_of.is_none() && region.version == version
+            });
+            if holds {
+                self.merge(a, b);
+                left -= 1;
+            }
+        }
+        self.labels()
+    }
+
+    /// The one with fewer neighbours goes into the other.
+    fn merge(&mut self, a: u32, b: u32) {
+        let neighbours = |region: u32| self.regions[region as usize].borders.len();
+        let (into, from) = if neighbours(a) >= neighbours(b) { (a, b) } else { (b, a) };
+        let gone = &mut self.regions[from as usize];
+        gone.part_of = Some(into);
+        let (mass, pixels, colour_sum) = (gone.mass, gone.pixels, gone.colour_sum);
+        let inherited = std::mem::take(&mut gone.borders);
+        let grown = &mut self.regions[into as usize];
+        grown.mass += mass;
+        grown.pixels += pixels;
+        add(&mut grown.colour_sum, &colour_sum);
+        grown.version += 1;
+        grown.borders.retain(|border| border.with != from);
+        for border in inherited.into_iter().filter(|border| border.with != into) {
+            self.regions[into as usize].join_border(border);
+            let beside = &mut self.regions[border.with as usize];
+            beside.borders.retain(|border| border.with != from);
+            beside.join_border(Border { with: into, ..border });
+        }
+        self.queue_borders(into, |_| true);
+    }
+
+    fn queue_borders(&mut self, region: u32, wanted: impl Fn(u32) -> bool) {
+        let here = &self.regions[region as usize];
+        for border in here.borders.iter().filter(|border| wanted(border.with)) {
+            let there = &self.regions[border.with as usize];
+            let cost = merging_cost(here, there, border);
+            self.queue.push(Reverse((cost.to_bits(), [region, border.with], [here.version, there.version])));
+        }
+    }
+
+    /// 1, 2, ... as the first cells come.
+    fn labels(&self) -> Vec<u32> {
+        let mut labels = vec![0; self.regions.len()];
+        let mut count = 0;
+        for cell in 0..self.regions.len() {
+            let mut root = cell;
+            while let Some(into) = self.regions[root].part_of {
+                root = into as usize;
+            }
+            if labels[root] == 0 {
+                count += 1;
+                labels[root] = count;
+            }
+            labels[cell] = labels[root];
+        }
+        labels
+    }
+}
+
+impl Region {
+    fn mean_colour(&self) -> Colour {
+        self.colour_sum.map(|sum| sum / self.pixels)
+    }
+
+    fn join_border(&mut self, more: Border) {
+        match self.borders.iter_mut().find(|border| border.with == more.with) {
+            Some(border) => {
+                border.length_px += more.length_px;
+                border.contrast_sum += more.contrast_sum;
+            }
+            None => self.borders.push(more),
+        }
+    }
+}
+
+fn merging_cost(a: &Region, b: &Region, border: &Border) -> f32 {
+    let mass = (a.mass * b.mass / (a.mass + b.mass)).powf(MASS_POWER);
+    let contrast = border.contrast_sum / border.length_px;
+    let difference = distance(&a.mean_colour(), &b.mean_colour()) + BORDER_WEIGHT * contrast;
+    let relative_length = border.length_px / a.pixels.min(b.pixels).sqrt();
+    mass * difference * difference / relative_length
+}
+
+/// The border of each two cells that touch, by the pair, smaller number first; `with` is not set yet.
+fn borders(image: &LabImage, cells: &Cells) -> Vec<([u32; 2], Border)> {
+    let (width, height) = (image.width, image.height);
+    let mut steps: Vec<([u32; 2], f32)> = Vec::new();
+    let mut look = |here: usize, there: usize, behind_here: usize, behind_there: usize| {
+        let [a, b] = [cells.of_pixel[here], cells.of_pixel[there]];
+        if a != b {
+            let contrast = distance(&image.pixels[behind_here], &image.pixels[behind_there]);
+            steps.push(([a.min(b), a.max(b)], contrast));
+        }
+    };
+    let behind = |at: usize| at.saturating_sub(BEHIND_BORDER_PX);
+    for y in 0..height {
+        for x in 0..width {
+            let here = y * width + x;
+            if x + 1 < width {
+                look(here, here + 1, y * width + behind(x), y * width + (x + 1 + BEHIND_BORDER_PX).min(width - 1));
+            }
+            if y + 1 < height {
+                look(here, here + width, behind(y) * width + x, (y + 1 + BEHIND_BORDER_PX).min(height - 1) * width + x);
+            }
+        }
+    }
+    // Stable, so that sums do not depend on anything but the picture.
+    steps.sort_by_key(|(pair, _)| *pair);
+    let gather = |steps: &[([u32; 2], f32)]| {
+        let contrast_sum = steps.iter().map(|(_, contrast)| contrast).sum();
+        (steps[0].0, Border { with: 0, length_px: steps.len() as f32, contrast_sum })
+    };
+    steps.chunk_by(|a, b| a.0 == b.0).map(gather).collect()
+}
+
+fn add(sum: &mut Colour, colour: &Colour) {
+    for (sum, value) in sum.iter_mut().zip(colour) {
+        *sum += value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    /// Two walls that meet at x = 47 and a strip of sky above them, each with a little texture.
+    fn corner() -> RgbImage {
+        RgbImage::from_fn(120, 90, |x, y| {
+            let grain = ((x * 7 + y * 13) % 11) as u8;
+            let base = match (x < 47, y < 20) {
+                (_, true) => [150, 180, 220],
+                (true, _) => [170, 90, 70],
+                (false, _) => [120, 110, 100],
+            };
+            image::Rgb(base.map(|v| v + grain))
+        })
+    }
+
+    fn labels_of(map: &LabelMap, keep: impl Fn(u32, u32) -> bool) -> BTreeSet<u32> {
+        let indexed = map.labels.iter().enumerate();
+        indexed.filter(|(i, _)| keep(*i as u32 % map.width, *i as u32 / map.width)).map(|(_, &label)| label).collect()
+    }
+
+    #[test]
+    fn as_many_superpixels_are_left_as_asked_for() {
+        for count in [1, 3, 20] {
+            let map = cut_superpixels(&corner(), &[], &SuperpixelOptions { count });
+            assert_eq!(labels_of(&map, |_, _| true), (1..=count as u32).collect());
+        }
+    }
+
+    #[test]
+    fn no_superpixel_lies_on_both_sides_of_an_edge() {
+        let map = cut_superpixels(&corner(), &[], &SuperpixelOptions { count: 6 });
+        let sky = labels_of(&map, |_, y| y < 19);
+        let left = labels_of(&map, |x, y| x < 46 && y > 21);
+        let right = labels_of(&map, |x, y| x > 48 && y > 21);
+        assert!(sky.is_disjoint(&left) && left.is_disjoint(&right) && right.is_disjoint(&sky));
+    }
+
+    #[test]
+    fn superpixels_are_smaller_where_keypoints_are_dense() {
+        let keypoints: Vec<(f64, f64)> =
+            (0..200).map(|i| (60.0 + f64::from(i % 50), 30.0 + f64::from(i / 50) * 12.0)).collect();
+        let on_right = |keypoints: &[(f64, f64)]| {
+            let map = cut_superpixels(&corner(), keypoints, &SuperpixelOptions { count: 20 });
+            labels_of(&map, |x, y| x > 48 && y > 21).len()
+        };
+        assert!(on_right(&keypoints) > on_right(&[]));
+    }
+
+    #[test]
+    fn tiny_and_empty_pictures_are_cut_too() {
+        for (width, height) in [(0, 0), (1, 1), (1, 40), (3, 2)] {
+            let map = cut_superpixels(&RgbImage::new(width, height), &[(0.5, 0.5)], &SuperpixelOptions::default());
+            assert_eq!(map.labels.len(), (width * height) as usize);
+        }
+    }
+}

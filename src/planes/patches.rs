@@ -203,8 +203,6 @@ struct Grower<'a> {
     /// Superpixels that have a plane: inliers, and which of them each point belongs to.
     superpixels: Vec<Vec<u32>>,
     memberships: Vec<Vec<u32>>,
-    /// Size of the superpixel that gave a point its normal.
-    authority: Vec<usize>,
     noise: f64,
 }
 
@@ -212,7 +210,7 @@ impl<'a> Grower<'a> {
     fn new(points: &'a [Point3<f64>], surfaces: Vec<Option<LocalSurface>>, neighbours: Vec<u32>, noise: f64) -> Self {
         let count = points.len();
         let memberships = vec![Vec::new(); count];
-        Grower { points, surfaces, neighbours, superpixels: Vec::new(), memberships, authority: vec![0; count], noise }
+        Grower { points, surfaces, neighbours, superpixels: Vec::new(), memberships, noise }
     }
 
     /// Fits a plane to a superpixel's points and gives its normal to those that lie in it.
@@ -231,12 +229,11 @@ impl<'a> Grower<'a> {
         }
         let id = self.superpixels.len() as u32;
         let members: Vec<u32> = inside.iter().map(|&i| group[i]).collect();
+        let roughness = fit.rms / fit.spread[1];
         for &m in &members {
             let m = m as usize;
             self.memberships[m].push(id);
-            if members.len() > self.authority[m] {
-                self.authority[m] = members.len();
-                let roughness = fit.rms / fit.spread[1];
+            if self.surfaces[m].is_none_or(|surface| roughness < surface.roughness) {
                 self.surfaces[m] = Some(LocalSurface { normal: fit.plane.normal, rms: fit.rms, roughness });
             }
         }

@@ -2,10 +2,11 @@
 //!
 //! Method       the robust search ranks minimal samples on a small panel of votes; then stages with larger panels and narrower gates
 //!              refine, slide and rank fewer and fewer of them. From the second stage on a pose also pays for every line of
-//!              sight that it would block. Distinct poses stay distinct to the end: the verdict reads the distance to the runner-up.
+//!              sight that it would block, and before the last it may hop into a better basin beside its own. Distinct poses stay distinct to the end: the verdict reads the distance to the runner-up.
 
 use rayon::prelude::*;
 
+use super::hop::hop;
 use super::lead::{ballot, lead_sigmas};
 use super::pairing::Pairing;
 use super::refine::{ErrorModel, Refined, Refiner};
@@ -58,6 +59,8 @@ struct Stage {
     ranking_gate: f64,
     /// Whether lines of sight count.
     sight: bool,
+    /// Whether poses may leave their basin for a better one beside it.
+    hops: bool,
     /// Poses that go on.
     keep: usize,
 }
@@ -66,6 +69,8 @@ struct Stage {
 const RANKING_PANEL: usize = 200;
 /// Probes whose lines of sight are traced.
 const SIGHT_PANEL: usize = 500;
+/// Probes that say which of two basins explains more.
+const HOPPING_PANEL: usize = 1500;
 /// Model error of one plane: buildings stand some centimetres from where models have them.
 const PLANE_SIGMA_M: f64 = 0.05;
 /// No point of a photograph is better than this.
@@ -132,9 +137,30 @@ pub fn refiner<'a>(scene: &'a Scene, scorer: &'a Scorer<'a>, scale_is_fixed: boo
 fn stages(scene: &Scene) -> [Stage; 3] {
     let votes = &scene.votes;
     [
-        Stage { panel: votes.panel(400), gates: &[5.0, 5.0, 4.0, 3.3, 2.7], ranking_gate: 2.3, sight: false, keep: 16 },
-        Stage { panel: votes.panel(1500), gates: &[2.7, 2.3, 2.0, 1.7, 1.7], ranking_gate: 1.3, sight: true, keep: 6 },
-        Stage { panel: probes(votes.firm), gates: &[1.7, 1.3, 1.0, 1.0], ranking_gate: 1.0, sight: true, keep: 6 },
+        Stage {
+            panel: votes.panel(400),
+            gates: &[5.0, 5.0, 4.0, 3.3, 2.7],
+            ranking_gate: 2.3,
+            sight: false,
+            hops: false,
+            keep: 16,
+        },
+        Stage {
+            panel: votes.panel(1500),
+            gates: &[2.7, 2.3, 2.0, 1.7, 1.7],
+            ranking_gate: 1.3,
+            sight: true,
+            hops: false,
+            keep: 6,
+        },
+        Stage {
+            panel: probes(votes.firm),
+            gates: &[1.7, 1.3, 1.0, 1.0],
+            ranking_gate: 1.0,
+            sight: true,
+            hops: true,
+            keep: 6,
+        },
     ]
 }
 
@@ -146,7 +172,9 @@ fn improved(scene: &Scene, refiner: &Refiner, stage: &Stage, contender: &Contend
     let gates_m: Vec<f64> = stage.gates.iter().map(|g| g * scene.unit_m).collect();
     let gate_m = stage.ranking_gate * scene.unit_m;
     let scorer = refiner.scorer;
-    let first = refiner.refine(&stage.panel, &contender.refined.city_from_level, &gates_m);
+    let pose = contender.refined.city_from_level;
+    let pose = if stage.hops { hop(refiner, &scene.votes.panel(HOPPING_PANEL), &pose, scene.unit_m) } else { pose };
+    let first = refiner.refine(&stage.panel, &pose, &gates_m);
     let spectrum = first.equations.spectrum();
     // Loose points have no vote.
     let voters = scene.votes.panel(stage.panel.len().min(MOST_VOTERS));

@@ -4,6 +4,7 @@
 mod cliques;
 mod contenders;
 mod field;
+mod hop;
 mod lead;
 mod pairing;
 mod refine;

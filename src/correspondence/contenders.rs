@@ -2,7 +2,8 @@
 //!
 //! Method       the robust search ranks minimal samples on a small panel of votes; then stages with larger panels and narrower gates
 //!              refine, slide and rank fewer and fewer of them. From the second stage on a pose also pays for every line of
-//!              sight that it would block, and before the last it may hop into a better basin beside its own. Distinct poses stay distinct to the end: the verdict reads the distance to the runner-up.
+//!              sight that it would block, and better poses in the basins beside join before the last. Distinct poses stay distinct
+//!              to the end: the verdict reads the distance to the runner-up.
 
 use rayon::prelude::*;
 
@@ -59,7 +60,7 @@ struct Stage {
     ranking_gate: f64,
     /// Whether lines of sight count.
     sight: bool,
-    /// Whether poses may leave their basin for a better one beside it.
+    /// Whether better poses in the basins beside join first.
     hops: bool,
     /// Poses that go on.
     keep: usize,
@@ -103,6 +104,9 @@ pub fn contest(scene: &Scene, scale: Option<f64>, seed: u64, progress: &(dyn Fn(
     };
     let mut contenders: Vec<Contender> = ranked.iter().map(unranked).collect();
     for stage in stages(scene) {
+        if stage.hops {
+            contenders.extend(beside(scene, &refiner, &contenders));
+        }
         let improve = |c: &Contender| improved(scene, &refiner, &stage, c);
         contenders = contenders.par_iter().map(improve).collect();
         contenders.retain(|c| scorer.within_reach(&c.refined.city_from_level));
@@ -168,13 +172,21 @@ fn probes(count: usize) -> Vec<u32> {
     (0..count as u32).collect()
 }
 
+/// Better poses in basins beside those of the contenders, which stay: one that is far enough off remains a rival.
+fn beside(scene: &Scene, refiner: &Refiner, contenders: &[Contender]) -> Vec<Contender> {
+    let panel = scene.votes.panel(HOPPING_PANEL);
+    let hopped = |c: &Contender| {
+        let pose = hop(refiner, &panel, &c.refined.city_from_level, scene.unit_m);
+        Contender { refined: refiner.assess(&[], &pose, 0.0), hits: 0, ..c.clone() }
+    };
+    contenders.par_iter().map(hopped).collect()
+}
+
 fn improved(scene: &Scene, refiner: &Refiner, stage: &Stage, contender: &Contender) -> Contender {
     let gates_m: Vec<f64> = stage.gates.iter().map(|g| g * scene.unit_m).collect();
     let gate_m = stage.ranking_gate * scene.unit_m;
     let scorer = refiner.scorer;
-    let pose = contender.refined.city_from_level;
-    let pose = if stage.hops { hop(refiner, &scene.votes.panel(HOPPING_PANEL), &pose, scene.unit_m) } else { pose };
-    let first = refiner.refine(&stage.panel, &pose, &gates_m);
+    let first = refiner.refine(&stage.panel, &contender.refined.city_from_level, &gates_m);
     let spectrum = first.equations.spectrum();
     // Loose points have no vote.
     let voters = scene.votes.panel(stage.panel.len().min(MOST_VOTERS));

@@ -28,7 +28,7 @@
 //! Scaling     equivariant in both frames; offsets should be taken about a near origin
 //! Source      Kukelova, Heller, Fitzgibbon, "Efficient intersection of three quadrics and applications in computer
 //!             vision" (CVPR 2016); homogeneous form, choice of charts and polish: mathematics.md sections 3, 6, 7
-//! Cost        2.4 us rigid, 3.2 us similarity (example table1, shared 2-core EPYC, 2026-11-22); worst residual of 100,000
+//! Cost        1.87 us rigid, 2.39 us similarity (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000
 //!             1.2e-15 of the scene
 //! Tests       below; tests/solver_accuracy.rs; golden/*.json
 //! ```

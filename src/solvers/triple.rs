@@ -23,8 +23,8 @@
 //! Degenerate  collinear triple, normals that do not span space, the pair along m: no pose is returned
 //! Scaling     differences to p_1; every test is relative to lengths in the data
 //! Source      Ramalingam et al. (ECCV 2010), section 3.1, in axes of our own; mathematics.md 4.1 to 4.3 and 7
-//! Cost        se3_321 0.33 us, se3_3111 0.36 us, se3_322 0.86 us, sim3_3211 0.37 us, sim3_31111 0.38 us (example table1, shared
-//!             2-core EPYC, 2026-11-22); residual 1e-15 of the scene as a rule, 1.3e-12 the worst of 100,000
+//! Cost        se3_321 0.23 us, se3_3111 0.25 us, se3_322 0.62 us, sim3_3211 0.24 us, sim3_31111 0.29 us (benches/solvers, shared
+//!             2-core EPYC, 2026-11-25); residual 1e-15 of the scene as a rule, 1.3e-12 the worst of 100,000
 //! Tests       below; tests/solver_accuracy.rs; golden/rigid.json, similarity.json
 //! ```
 

@@ -27,7 +27,7 @@
 //!             Normals that do not span space, coinciding points: no pose is returned
 //! Scaling     differences to p_1; G_1, G_2 orthonormal; all tests are relative
 //! Source      mathematics.md section 5; derived here
-//! Cost        1.7 to 2.3 us (example table1, shared 2-core EPYC, 2026-11-22); worst residual of 100,000 1.5e-15 of the scene
+//! Cost        1.20 to 1.68 us (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000 1.5e-15 of the scene
 //! Tests       below; tests/solver_accuracy.rs; golden/rigid.json, similarity.json, hard.json
 //! ```
 

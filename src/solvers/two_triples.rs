@@ -17,7 +17,7 @@
 //! Degenerate  collinear triples, parallel planes, normals in one plane: no pose is returned
 //! Scaling     differences to centroids; all tests are relative
 //! Source      Ramalingam et al. (ECCV 2010), section 3.2; mathematics.md 4.4, 4.5
-//! Cost        0.19 to 0.27 us (example table1, shared 2-core EPYC, 2026-11-22); worst residual of 100,000 1.4e-11 of the scene
+//! Cost        0.15 to 0.18 us (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000 1.4e-11 of the scene
 //! Tests       solvers::tests; tests/solver_accuracy.rs; golden/rigid.json
 //! ```
 

@@ -18,7 +18,7 @@
 //!             similarity: planes through one point (scale free). A vanishing volume, or r = 0: no pose is returned
 //! Scaling     differences to p_1; the solver is equivariant, offsets should be taken about a near origin
 //! Source      mathematics.md section 8; derived here
-//! Cost        0.17 us, similarity 0.23 to 0.27 us (example table1, shared 2-core EPYC, 2026-11-22)
+//! Cost        0.13 us, similarity 0.18 us (benches/solvers, shared 2-core EPYC, 2026-11-25)
 //! Tests       below; tests/solver_accuracy.rs; golden/gravity.json
 //! ```
 

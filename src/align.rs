@@ -15,7 +15,7 @@ pub enum Up {
     /// Estimated from walls, floors and cameras.
     #[default]
     Auto,
-    /// Not used: the start's tilt is all that is known.
+    /// Not used: the search turns freely, as far as three sigmas of the start's tilt.
     None,
     /// Given, in the sfm frame (any length but zero).
     Given(Vector3<f64>),
@@ -61,11 +61,12 @@ fn local_start(options: &AlignOptions, city: &CityModel) -> Start {
 }
 
 fn upright(patches: &Patches, start: &Start, up: Up) -> Upright {
-    let guess = Upright { up: start.city_from_sfm.rotation.inverse() * Vector3::z(), sigma_rad: start.tilt_sigma_rad };
+    let up_of_start = start.city_from_sfm.rotation.inverse() * Vector3::z();
+    let guess = Upright { up: up_of_start, sigma_rad: start.tilt_sigma_rad, known: false };
     match up {
         Up::Auto => estimate_up(&patches.patches, &guess),
         Up::None => guess,
-        Up::Given(up) => Upright { up: up.try_normalize(0.0).unwrap_or(guess.up), sigma_rad: 0.0 },
+        Up::Given(up) => Upright { up: up.try_normalize(0.0).unwrap_or(guess.up), sigma_rad: 0.0, known: true },
     }
 }
 
@@ -97,7 +98,7 @@ impl Outcome<'_> {
             support: self.support(&rows),
             evidence: self.evidence(&rows),
             search: SearchSummary {
-                solver: self.contest.solver.to_owned(),
+                solver: self.contest.solver.clone(),
                 samples: self.contest.samples as u64,
                 seed: options.seed,
             },

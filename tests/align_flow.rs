@@ -138,6 +138,45 @@ fn holds_a_scale_that_is_given() {
     assert!(alignment.freedoms.iter().all(|f| f.name != "scale"));
 }
 
+/// The start, leaning by 17 degrees and owning to it.
+fn leaning(options: &AlignOptions) -> AlignOptions {
+    let mut leaning = AlignOptions { up: Up::None, ..*options };
+    let middle = Point3::new(12.0, 16.0, 3.0);
+    let lean = Rotation3::from_euler_angles(0.25, -0.17, 0.0);
+    leaning.start.city_from_sfm = Similarity::about(&middle, &middle, 1.0, lean) * options.start.city_from_sfm;
+    leaning.start.tilt_sigma_rad = 10f64.to_radians();
+    leaning
+}
+
+#[test]
+fn turns_freely_where_up_is_not_used() {
+    let alignment = run(true, &leaning(&options(0)));
+    assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
+    let (level, up) = errors(&alignment);
+    assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
+}
+
+#[test]
+fn the_result_names_the_configuration_that_searched() {
+    let scaled = |up| AlignOptions { fixed_scale: Some(1.0 / 0.13), up, ..options(0) };
+    let solver = |options: &AlignOptions| run(true, options).search.solver;
+    assert_eq!(solver(&options(0)), "upright similarity (2,1,1,1)");
+    assert_eq!(solver(&scaled(Up::Auto)), "upright rigid (2,1,1)");
+    assert_eq!(solver(&AlignOptions { up: Up::None, ..options(0) }), "similarity (3,2,1,1)");
+    // Three planes are fewer than four; which of the configurations on three is cheapest is for the data to say.
+    let rigid = solver(&scaled(Up::None));
+    assert!(rigid.starts_with("rigid (3,") && rigid.matches(',').count() == 2, "{rigid}");
+}
+
+#[test]
+fn a_single_wall_feeds_no_search_that_turns_freely() {
+    let wall = Reconstruction { points: cloud(false).points[..150].to_vec(), ..Reconstruction::default() };
+    let free = AlignOptions { up: Up::None, ..options(0) };
+    let alignment = align(&city(true), &wall, None, &free, &|_, _, _| ());
+    assert_eq!((alignment.verdict, alignment.search.solver.as_str()), (Verdict::Failed, "none"));
+    assert_eq!(alignment.search.samples, 0);
+}
+
 #[test]
 fn says_failed_where_the_city_is_another() {
     let mut elsewhere = options(0);

@@ -428,3 +428,16 @@ fn damaged_copies_of_the_sample_are_refused_with_their_name() {
         Align { sfm: "sfm".into(), ..Align::sample() }.refused(&room, &[file]);
     }
 }
+
+#[test]
+fn align_turns_freely_where_up_is_not_used_and_names_its_solver() {
+    let room = room();
+    for (more, solver) in
+        [(&["--up", "none"][..], "similarity (3,2,1,1)"), (&["--up", "auto"][..], "upright similarity (2,1,1,1)")]
+    {
+        let output = cityweld(&room, &[&Align::with(more).args()[..], &["--force"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{more:?}: {}{}", stdout(&output), stderr(&output));
+        let report = std::fs::read_to_string(room.path().join("out/alignment.json")).unwrap();
+        assert!(report.contains(&format!("\"solver\": \"{solver}\"")), "{more:?}: {report}");
+    }
+}

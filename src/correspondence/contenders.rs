@@ -7,6 +7,7 @@
 
 use rayon::prelude::*;
 
+use super::economy::{cheapest, prospects};
 use super::hop::hop;
 use super::lead::{ballot, lead_sigmas};
 use super::pairing::Pairing;
@@ -17,7 +18,7 @@ use super::search::{PoseSearch, largest_shift};
 use super::slide::slide;
 use crate::geometry::{Similarity, Vector3};
 use crate::robust::{RansacOptions, ransac};
-use crate::solvers::Up;
+use crate::solvers::{Sought, Up};
 
 /// A pose that survived to the end.
 #[derive(Clone, Debug)]
@@ -47,9 +48,13 @@ impl Contender {
 pub struct Contest {
     /// Best first.
     pub contenders: Vec<Contender>,
-    pub solver: &'static str,
+    /// Which configuration of the minimal family drew the samples, or `NO_SOLVER`.
+    pub solver: String,
     pub samples: usize,
 }
+
+/// What a result names where the data feed no solver.
+pub const NO_SOLVER: &str = "none";
 
 /// A round of improvement.
 struct Stage {
@@ -82,13 +87,17 @@ const SAME_POSE_UNITS: f64 = 2.5;
 /// Searches the scene. `scale` (relative to the start) is held where given; `progress` is told how many samples of how many.
 pub fn contest(scene: &Scene, scale: Option<f64>, seed: u64, progress: &(dyn Fn(usize, usize) + Sync)) -> Contest {
     let scorer = Scorer { votes: &scene.votes, field: &scene.field, start: scene.start };
-    let z = Vector3::z();
-    let solver = if scale.is_some() { "upright rigid (2,1,1)" } else { "upright similarity (2,1,1,1)" };
-    let mut contest = Contest { contenders: Vec::new(), solver, samples: 0 };
-    let Some(up) = Up::new(&z, &z) else { return contest };
-    let pairing = Pairing::new(&scene.votes, &scene.planes, &scene.start, scale, |p| scene.is_seen(p));
-    let panel = scene.votes.panel(RANKING_PANEL);
-    let problem = PoseSearch { pairing, scorer: &scorer, up, panel, gate_m: WIDEST_GATE * scene.unit_m };
+    let pairing =
+        Pairing::new(&scene.votes, &scene.planes, &scene.start, scale, scene.up_is_known, |p| scene.is_seen(p));
+    let (sought, panel) = (sought(scene, scale), scene.votes.panel(RANKING_PANEL));
+    let gate_m = WIDEST_GATE * scene.unit_m;
+    let search =
+        |configuration| PoseSearch { pairing: &pairing, scorer: &scorer, sought, configuration, panel: &panel, gate_m };
+    let searches: Vec<PoseSearch> = sought.configurations().iter().map(search).collect();
+    let mut contest = Contest { contenders: Vec::new(), solver: NO_SOLVER.to_owned(), samples: 0 };
+    let Some(configuration) = cheapest(&prospects(&searches)) else { return contest };
+    contest.solver = format!("{} {configuration}", sought.name());
+    let problem = search(&configuration);
     let options = RansacOptions { seed, keep: 60, fewest_samples: 8192, most_samples: 65_536, enough_hits: 10 };
     let (ranked, samples) = ransac(&problem, &options, |n| progress(n, options.most_samples));
     contest.samples = samples;
@@ -121,6 +130,17 @@ pub fn contest(scene: &Scene, scale: Option<f64>, seed: u64, progress: &(dyn Fn(
     compare_with_best(&mut contenders, scene, &scorer);
     contest.contenders = contenders;
     contest
+}
+
+/// What is unknown of the pose in the level frame.
+fn sought(scene: &Scene, scale: Option<f64>) -> Sought {
+    let up = Up::new(&Vector3::z(), &Vector3::z()).filter(|_| scene.up_is_known);
+    match (up, scale) {
+        (Some(up), None) => Sought::UprightSimilarity(up),
+        (Some(up), Some(_)) => Sought::UprightRigid(up),
+        (None, None) => Sought::Similarity,
+        (None, Some(_)) => Sought::Rigid,
+    }
 }
 
 fn compare_with_best(contenders: &mut [Contender], scene: &Scene, scorer: &Scorer) {

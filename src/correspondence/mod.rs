@@ -3,6 +3,7 @@
 
 mod cliques;
 mod contenders;
+mod economy;
 mod field;
 mod hop;
 mod lead;
@@ -17,6 +18,7 @@ mod votes;
 
 pub use cliques::{Cliques, Graph};
 pub use contenders::{Contender, Contest, contest, refiner};
+pub use economy::{Prospect, cheapest, prospects};
 pub use field::{FacetField, FieldTriangle, Hit, Probe};
 pub use pairing::{Pair, Pairing, Sample};
 pub use refine::{ErrorModel, ProbeOnPlane, Refined, Refiner};

@@ -5,16 +5,17 @@ use super::scoring::Scorer;
 use super::votes::LevelPatch;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::robust::{Problem, Random};
-use crate::solvers::{Poses, Row, Up, upright_se3_4pt, upright_sim3_5pt};
+use crate::solvers::{Configuration, Row, Sought, solve_minimal};
 
 /// The alignment as the robust loop sees it. Poses are `city_from_level`.
 pub struct PoseSearch<'a> {
-    pub pairing: Pairing<'a>,
+    pub pairing: &'a Pairing<'a>,
     pub scorer: &'a Scorer<'a>,
-    /// The vertical, common to both frames.
-    pub up: Up,
+    pub sought: Sought,
+    /// How many points the samples take from each pair, the first pair's first.
+    pub configuration: &'a Configuration,
     /// Probes that rank hypotheses.
-    pub panel: Vec<u32>,
+    pub panel: &'a [u32],
     /// Within this distance a vote counts for a hypothesis, metres of the start: a minimal sample extrapolates the noise of a few
     /// patches over the whole scene.
     pub gate_m: f64,
@@ -27,12 +28,11 @@ impl Problem for PoseSearch<'_> {
     type Pose = Similarity;
 
     fn hypothesize(&self, random: &mut Random, poses: &mut Vec<Similarity>) {
-        let Some(sample) = self.pairing.draw(random) else { return };
-        poses.extend(self.solve(&sample).iter().filter(|pose| self.scorer.within_reach(pose)));
+        self.sample(random, poses);
     }
 
     fn score(&self, pose: &Similarity) -> f64 {
-        self.scorer.panel_share(&self.panel, pose, self.gate_m) - self.scorer.prior_cost(pose)
+        self.scorer.panel_share(self.panel, pose, self.gate_m) - self.scorer.prior_cost(pose)
     }
 
     fn same(&self, a: &Similarity, b: &Similarity) -> bool {
@@ -41,41 +41,84 @@ impl Problem for PoseSearch<'_> {
 }
 
 impl PoseSearch<'_> {
-    /// The poses that lay the sample's patches on their planes. The first patch gives two points, since its plane fixes the
-    /// heading; every other pair gives one; what they leave open is completed from the start.
-    fn solve(&self, sample: &Sample) -> Poses {
-        let patch = |pair: &Pair| &self.scorer.votes.patches[pair.patch as usize];
-        let on = |point: Vector3<f64>, pair: &Pair| Row {
-            point: point * self.pairing.scale().unwrap_or(1.0),
-            normal: pair.target.normal,
-            offset: pair.target.offset,
-        };
-        let Some(first) = sample.pairs.first() else { return Poses::none() };
-        let along = first_axis(patch(first));
-        let rows: Vec<Row> = [1.0, -1.0]
-            .into_iter()
-            .map(|side| on(patch(first).center.coords + along * side, first))
-            .chain(sample.pairs[1..].iter().map(|pair| on(patch(pair).center.coords, pair)))
-            .chain(sample.completion.iter().copied())
-            .collect();
-        match self.pairing.scale() {
-            None => <&[Row; 5]>::try_from(&rows[..]).map_or(Poses::none(), |rows| upright_sim3_5pt(rows, &self.up)),
-            Some(scale) => {
-                let poses =
-                    <&[Row; 4]>::try_from(&rows[..]).map_or(Poses::none(), |rows| upright_se3_4pt(rows, &self.up));
-                let mut scaled = Poses::none();
-                poses.iter().for_each(|pose| scaled.push(Similarity { scale, ..*pose }));
-                scaled
+    /// Draws one sample and appends its poses within the start's reach. Tells the chance that the sample is right; `None` where
+    /// its patches fit nothing or cannot give the points.
+    pub fn sample(&self, random: &mut Random, poses: &mut Vec<Similarity>) -> Option<f64> {
+        let points_per_plane = self.configuration.points_per_plane;
+        let sample = self.pairing.draw(points_per_plane.len(), random)?;
+        let rows = self.rows(&sample)?;
+        let solved = solve_minimal(&self.sought, points_per_plane, &rows);
+        let scaled =
+            solved.iter().map(|pose| Similarity { scale: self.pairing.scale().unwrap_or(pose.scale), ..*pose });
+        let right_way_up = |pose: &Similarity| self.faces_its_planes(&sample, pose);
+        poses.extend(scaled.filter(|pose| right_way_up(pose) && self.scorer.within_reach(pose)));
+        Some(sample.chance)
+    }
+
+    /// So many points of each pair on its plane; then what completes the sample, one row for each plane that is left.
+    fn rows(&self, sample: &Sample) -> Option<Vec<Row>> {
+        let mut rows = Vec::with_capacity(self.sought.unknowns());
+        let mut completion = sample.completion.iter();
+        for (k, &points) in self.configuration.points_per_plane.iter().enumerate() {
+            match sample.pairs.get(k) {
+                Some(pair) => {
+                    let patch = &self.scorer.votes.patches[pair.patch as usize];
+                    let places = places(patch, points, &self.across(sample, k));
+                    rows.extend(places[..points].iter().map(|place| self.row(place, pair)));
+                }
+                None if points == 1 => rows.push(*completion.next()?),
+                None => return None,
             }
+        }
+        Some(rows)
+    }
+
+    fn row(&self, place: &Vector3<f64>, pair: &Pair) -> Row {
+        let point = place * self.pairing.scale().unwrap_or(1.0);
+        Row { point, normal: pair.target.normal, offset: pair.target.offset }
+    }
+
+    /// What two points of the pair's patch must stand across, to tell most: the direction that is known already. Known up holds
+    /// its vertical; else a patch is turned about the normal of the pair before it.
+    fn across(&self, sample: &Sample, k: usize) -> Vector3<f64> {
+        if self.pairing.up_is_known() {
+            return Vector3::z();
+        }
+        let count = sample.pairs.len();
+        sample.pairs[(k + count - 1) % count].normal
+    }
+
+    /// Three points of a patch lie as well on their plane when the patch is turned over.
+    fn faces_its_planes(&self, sample: &Sample, pose: &Similarity) -> bool {
+        let wholes = self.configuration.points_per_plane.iter().take_while(|points| **points == 3).count();
+        let mut pairs = sample.pairs.iter().take(wholes);
+        pairs.all(|pair| (pose.rotation * pair.normal).dot(&pair.target.normal) > 0.0)
+    }
+}
+
+/// One, two or three points for a patch, as far apart as its own points are: its middle; a pair at right angles to `across`; a
+/// triangle.
+fn places(patch: &LevelPatch, points: usize, across: &Vector3<f64>) -> [Vector3<f64>; 3] {
+    let middle = patch.center.coords;
+    match points {
+        1 => [middle; 3],
+        2 => {
+            let along = in_plane(patch, across);
+            [middle + along, middle - along, middle]
+        }
+        _ => {
+            let [long, short] = [patch.axes[0] * patch.spread[0], patch.axes[1] * patch.spread[1]];
+            let (back, aside) = (-0.5 * long, 0.75f64.sqrt() * short);
+            [middle + long, middle + back + aside, middle + back - aside]
         }
     }
 }
 
-/// The level direction in a patch's plane, as long as the patch: two points along it have the heading of the plane.
-fn first_axis(patch: &LevelPatch) -> Vector3<f64> {
-    let level = Vector3::z().cross(&patch.normal).try_normalize(0.0).unwrap_or_default();
-    let [a, b] = [0, 1].map(|k| patch.axes[k].dot(&level) * patch.spread[k]);
-    level * (a * a + b * b).sqrt().max(f64::MIN_POSITIVE)
+/// The direction in a patch's plane at right angles to `across`, as long as the patch.
+fn in_plane(patch: &LevelPatch, across: &Vector3<f64>) -> Vector3<f64> {
+    let direction = across.cross(&patch.normal).try_normalize(0.0).unwrap_or_default();
+    let [a, b] = [0, 1].map(|k| patch.axes[k].dot(&direction) * patch.spread[k]);
+    direction * (a * a + b * b).sqrt().max(f64::MIN_POSITIVE)
 }
 
 /// The largest distance between the images of six places round the middle of the level frame.

@@ -58,6 +58,8 @@ const SAME_NORMAL_DEG: f64 = 25.0;
 const GRAZING_DEG: f64 = 83.0;
 /// Flat enough for a floor: a wall leans less than this from upright and a floor from level.
 const UPRIGHT_SIN: f64 = 0.2;
+/// A frame that leans by less than this still tells a floor, up to 37 degrees from its z, from the ceiling that it would be upside down.
+const TELLS_FLOORS_RAD: f64 = 0.8;
 
 impl Votes {
     /// `start` maps the cloud to the city's local frame; `upright` tells its up.
@@ -82,7 +84,7 @@ impl Votes {
             noise_m: patches.noise * city_from_sfm.scale,
             radius_m: 0.0,
         };
-        votes.take_patches(patches);
+        votes.take_patches(patches, 3.0 * upright.sigma_rad < TELLS_FLOORS_RAD);
         votes.firm = votes.probes.len();
         votes.weigh();
         votes.take_loose_points(patches);
@@ -91,13 +93,14 @@ impl Votes {
         votes
     }
 
-    fn take_patches(&mut self, patches: &Patches) {
+    /// `floors_look_up`: whether z is near enough to up to tell the side of level patches.
+    fn take_patches(&mut self, patches: &Patches, floors_look_up: bool) {
         let to_level = self.level_from_sfm;
         let min_cos = SAME_NORMAL_DEG.to_radians().cos();
         for patch in &patches.patches {
             let mut normal = to_level.rotation * patch.fit.plane.normal;
             // Nobody scans a floor from below: where no camera tells, level surfaces look up.
-            let level = normal.z.abs() > 1.0 - UPRIGHT_SIN;
+            let level = floors_look_up && normal.z.abs() > 1.0 - UPRIGHT_SIN;
             if !patch.sided && level && normal.z < 0.0 {
                 normal = -normal;
             }

@@ -18,6 +18,8 @@ pub struct Upright {
     pub up: Vector3<f64>,
     /// About each horizontal axis.
     pub sigma_rad: f64,
+    /// Whether a search may take it for granted.
+    pub known: bool,
 }
 
 /// A wall this far from upright (or a floor from level) still votes, with a weight that has fallen to a half.
@@ -26,6 +28,8 @@ const KERNEL_RAD: f64 = 0.035;
 const STEP_RAD: f64 = 0.02;
 /// Walls are built to this, and a polished estimate is never believed to be better.
 const BEST_SIGMA_RAD: f64 = 0.005;
+/// Up worse than this is not known: three sigmas of it are what the normals of a right pair of patch and plane may differ by.
+const KNOWN_SIGMA_RAD: f64 = 0.04;
 
 /// Polishes `guess`, looking as far as three of its sigmas.
 pub fn estimate_up(patches: &[Patch], guess: &Upright) -> Upright {
@@ -49,7 +53,8 @@ pub fn estimate_up(patches: &[Patch], guess: &Upright) -> Upright {
         let Some((next, s)) = polish(&votes, &up, guess.sigma_rad) else { break };
         (up, sigma) = (next, s);
     }
-    Upright { up, sigma_rad: sigma.clamp(BEST_SIGMA_RAD.min(guess.sigma_rad), guess.sigma_rad) }
+    let sigma_rad = sigma.clamp(BEST_SIGMA_RAD.min(guess.sigma_rad), guess.sigma_rad);
+    Upright { up, sigma_rad, known: sigma_rad <= KNOWN_SIGMA_RAD }
 }
 
 /// How far a patch is from being a wall or a floor under `up`, whichever is nearer: the sine of the angle, and its
@@ -125,16 +130,17 @@ mod tests {
             [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.2, 0.0), (0.0, 0.0, 1.0), (0.7, 0.0, 0.7), (0.0, -0.6, 0.8)];
         let patches: Vec<Patch> =
             normals.iter().map(|&(x, y, z)| facing(turn * Vector3::new(x, y, z).normalize())).collect();
-        let found = estimate_up(&patches, &Upright { up: Vector3::z(), sigma_rad: 0.035 });
+        let found = estimate_up(&patches, &Upright { up: Vector3::z(), sigma_rad: 0.035, known: false });
         assert!(found.up.angle(&(turn * Vector3::z())) < 2e-3, "{}", found.up.angle(&(turn * Vector3::z())));
-        assert!(found.sigma_rad < 0.035);
+        assert!(found.sigma_rad < 0.035 && found.known);
     }
 
     #[test]
     fn keeps_the_guess_where_nothing_votes() {
-        let guess = Upright { up: Vector3::new(0.0, 0.6, 0.8), sigma_rad: 0.03 };
+        let guess = Upright { up: Vector3::new(0.0, 0.6, 0.8), sigma_rad: 0.3, known: false };
         let found = estimate_up(&[], &guess);
         assert_eq!(found.sigma_rad, guess.sigma_rad);
+        assert!(!found.known);
         assert!(found.up.angle(&guess.up) < 0.2);
     }
 }

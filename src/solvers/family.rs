@@ -1,5 +1,7 @@
 //! The family's one entry: which solver serves a sample is decided by how its points are spread over the planes.
 
+use std::fmt;
+
 use super::{
     Poses, Row, Up, se3_6pt, se3_321, se3_322, se3_331, se3_332, se3_333, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211,
     sim3_31111, sim3_pair_5pt, upright_se3_4pt, upright_sim3_5pt,
@@ -28,6 +30,16 @@ impl Sought {
             Sought::UprightSimilarity(_) => 5,
         }
     }
+
+    /// What a result calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Sought::Rigid => "rigid",
+            Sought::Similarity => "similarity",
+            Sought::UprightRigid(_) => "upright rigid",
+            Sought::UprightSimilarity(_) => "upright similarity",
+        }
+    }
 }
 
 /// One configuration, and what a sample of it costs: for a choice by expected cost, time per sample times expected trials.
@@ -37,8 +49,16 @@ pub struct Configuration {
     pub points_per_plane: &'static [usize],
     /// Real poses on average, each of which must be scored (mathematics.md 13).
     pub poses: f64,
-    /// Time of one solve, all poses: example `table1` on one core of an EPYC at 2 vCPUs, 2026-11-22. Ratios matter.
+    /// Time of one solve, all poses: median of `benches/solvers` on one core of a shared EPYC, 2026-11-25. Ratios matter.
     pub solve_us: f64,
+}
+
+/// As the paper writes it: (3,2,1).
+impl fmt::Display for Configuration {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let points: Vec<String> = self.points_per_plane.iter().map(usize::to_string).collect();
+        write!(out, "({})", points.join(","))
+    }
 }
 
 const fn costs(points_per_plane: &'static [usize], poses: f64, solve_us: f64) -> Configuration {
@@ -47,34 +67,34 @@ const fn costs(points_per_plane: &'static [usize], poses: f64, solve_us: f64) ->
 
 /// Rigid samples: the paper's Table 1, the minimal ones first.
 pub const RIGID: [Configuration; 10] = [
-    costs(&[3, 2, 1], 4.0, 0.33),
-    costs(&[3, 1, 1, 1], 2.745, 0.36),
-    costs(&[2, 2, 2], 4.612, 2.25),
-    costs(&[2, 2, 1, 1], 3.469, 1.89),
-    costs(&[2, 1, 1, 1, 1], 3.135, 1.73),
-    costs(&[1, 1, 1, 1, 1, 1], 3.026, 2.43),
-    costs(&[3, 3, 1], 2.0, 0.27),
-    costs(&[3, 2, 2], 1.0, 0.86),
-    costs(&[3, 3, 2], 1.0, 0.19),
-    costs(&[3, 3, 3], 1.0, 0.20),
+    costs(&[3, 2, 1], 4.0, 0.229),
+    costs(&[3, 1, 1, 1], 2.745, 0.246),
+    costs(&[2, 2, 2], 4.612, 1.616),
+    costs(&[2, 2, 1, 1], 3.469, 1.312),
+    costs(&[2, 1, 1, 1, 1], 3.135, 1.196),
+    costs(&[1, 1, 1, 1, 1, 1], 3.026, 1.872),
+    costs(&[3, 3, 1], 2.0, 0.177),
+    costs(&[3, 2, 2], 1.0, 0.617),
+    costs(&[3, 3, 2], 1.0, 0.149),
+    costs(&[3, 3, 3], 1.0, 0.166),
 ];
 
 /// Minimal samples of a similarity.
 pub const SIMILARITY: [Configuration; 6] = [
-    costs(&[3, 2, 1, 1], 2.152, 0.37),
-    costs(&[3, 1, 1, 1, 1], 2.060, 0.38),
-    costs(&[2, 2, 2, 1], 2.601, 2.32),
-    costs(&[2, 2, 1, 1, 1], 2.524, 2.23),
-    costs(&[2, 1, 1, 1, 1, 1], 2.585, 2.30),
-    costs(&[1, 1, 1, 1, 1, 1, 1], 2.722, 3.17),
+    costs(&[3, 2, 1, 1], 2.152, 0.241),
+    costs(&[3, 1, 1, 1, 1], 2.060, 0.292),
+    costs(&[2, 2, 2, 1], 2.601, 1.681),
+    costs(&[2, 2, 1, 1, 1], 2.524, 1.646),
+    costs(&[2, 1, 1, 1, 1, 1], 2.585, 1.665),
+    costs(&[1, 1, 1, 1, 1, 1, 1], 2.722, 2.386),
 ];
 
 /// Minimal samples of a rigid pose with known vertical.
-pub const UPRIGHT_RIGID: [Configuration; 2] = [costs(&[2, 1, 1], 2.0, 0.16), costs(&[1, 1, 1, 1], 2.0, 0.17)];
+pub const UPRIGHT_RIGID: [Configuration; 2] = [costs(&[2, 1, 1], 2.0, 0.127), costs(&[1, 1, 1, 1], 2.0, 0.130)];
 
 /// Minimal samples of a similarity with known vertical.
 pub const UPRIGHT_SIMILARITY: [Configuration; 2] =
-    [costs(&[2, 1, 1, 1], 1.526, 0.23), costs(&[1, 1, 1, 1, 1], 1.565, 0.27)];
+    [costs(&[2, 1, 1, 1], 1.526, 0.180), costs(&[1, 1, 1, 1, 1], 1.565, 0.180)];
 
 impl Sought {
     /// The configurations that can be solved, with their costs.

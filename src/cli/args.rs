@@ -107,7 +107,8 @@ pub struct AlignArgs {
     /// Fixed scale, metres per reconstruction unit [default: free]
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub scale: Option<Scale>,
-    /// Up in the reconstruction's frame: auto, none, or X,Y,Z of any length
+    /// Up in the reconstruction's frame: auto (walls and floors tell), none (not used: the search turns freely, as far as three
+    /// sigmas of the start's tilt), or X,Y,Z of any length
     #[arg(long, value_name = "UP", default_value = "auto", allow_hyphen_values = true)]
     pub up: UpArg,
     /// Axis that is up in OBJ files

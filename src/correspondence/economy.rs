@@ -35,9 +35,10 @@ const PILOT_DRAWS: u64 = 8192;
 /// Seed of the pilot: its own, so that the choice does not hang on the user's.
 const PILOT_SEED: u64 = 0;
 
-/// Time to draw one pair, and to score one pose on the ranking panel: one core of an EPYC, 2026-11-25. Ratios matter.
-const PAIR_US: f64 = 2.0;
-const SCORE_US: f64 = 10.0;
+/// Time to draw one pair (2 to 10 us, by the city) and to score one pose on the ranking panel (10 to 40 us): one core of a shared EPYC,
+/// 2026-11-25. Ratios matter.
+const PAIR_US: f64 = 5.0;
+const SCORE_US: f64 = 20.0;
 /// Patches that lie on the city: the others are trees, cars, and houses that the model lacks.
 const ON_CITY: f64 = 0.5;
 

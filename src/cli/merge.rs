@@ -21,9 +21,9 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
     let output = session.begin(&args.output, OutputKind::Folder)?;
     let voice = &session.voice;
     let city = read_the_city(args, session)?;
-    let parts = read_parts(args, city.as_ref(), session)?;
     let options = MergeOptions { seed: session.common.seed };
-    let merged = merge(&parts, &options, &|stage| voice.detail(stage))?;
+    // The parts go before the files are written: a model is as large as they are.
+    let merged = merge(&read_parts(args, city.as_ref(), session)?, &options, &|stage| voice.detail(stage))?;
     voice.detail(&format!("{}: {}", merged.verdict.word(), merged.reason));
 
     voice.bar.show("writing", 0, 0);

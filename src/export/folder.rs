@@ -66,7 +66,8 @@ pub fn write_placed(
 ) -> Result<Vec<&'static str>, ExportError> {
     let mut files = Vec::new();
     if formats.glb {
-        let placed = Some(Placed { reconstruction, city_from_sfm: *city_from_sfm });
+        let placed =
+            Some(Placed { reconstruction, point_colors: &reconstruction.colors, city_from_sfm: *city_from_sfm });
         write_scene(&folder.join(SCENE_FILE), &Scene { title, city, placed })?;
         files.push(SCENE_FILE);
     }

@@ -51,6 +51,8 @@ pub struct Scene<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'a> {
     pub reconstruction: &'a Reconstruction,
+    /// sRGB, one a point, or empty.
+    pub point_colors: &'a [[u8; 3]],
     /// Absolute city coordinates.
     pub city_from_sfm: Similarity,
 }
@@ -190,7 +192,7 @@ fn points_node(glb: &mut Glb, placed: &Placed<'_>) -> Option<Index<Node>> {
         // Beyond single precision no viewer could show it, and the file would be invalid.
         if position.iter().all(|v| v.is_finite()) {
             positions.push(position);
-            colors.push(linear(sfm.colors.get(index).copied().unwrap_or(POINT_COLOR)));
+            colors.push(linear(placed.point_colors.get(index).copied().unwrap_or(POINT_COLOR)));
         }
     }
     if positions.is_empty() {
@@ -353,7 +355,11 @@ mod tests {
     fn turns_z_up_into_y_up_relative_to_the_origin() {
         let (city, reconstruction) = (city(), reconstruction());
         let shift = Similarity { translation: city.origin, ..Similarity::identity() };
-        let placed = Some(Placed { reconstruction: &reconstruction, city_from_sfm: shift });
+        let placed = Some(Placed {
+            reconstruction: &reconstruction,
+            point_colors: &reconstruction.colors,
+            city_from_sfm: shift,
+        });
         let (gltf, _) = written(&Scene { title: "t", city: &city, placed });
         assert_eq!(positions(&gltf, "points"), [[1.0, 3.0, -2.0]]);
         assert_eq!(positions(&gltf, "ground")[2], [9.0, 1.0, -9.0]);

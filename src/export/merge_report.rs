@@ -40,11 +40,12 @@ pub fn write_merge(folder: &Path, merge: &Merge, city: Option<&CityModel>) -> Re
     write_file(&folder.join(MERGE_REPORT_FILE), |out| out.write_all(report.as_bytes()))?;
     let mut files = vec![MERGE_REPORT_FILE];
     let Some(model) = &merge.model else { return Ok(files) };
-    let mut painted = model.sfm.clone();
-    painted.colors = model.part_of_point.iter().map(|p| PART_COLORS[*p as usize % PART_COLORS.len()]).collect();
+    let colors: Vec<[u8; 3]> =
+        model.part_of_point.iter().map(|p| PART_COLORS[*p as usize % PART_COLORS.len()]).collect();
     let nothing = CityModel::default();
     let city = city.unwrap_or(&nothing);
-    let placed = Some(Placed { reconstruction: &painted, city_from_sfm: Similarity::identity() });
+    let placed =
+        Some(Placed { reconstruction: &model.sfm, point_colors: &colors, city_from_sfm: Similarity::identity() });
     let title = format!("{}: {}", merge.verdict.word(), merge.reason);
     write_scene(&folder.join(SCENE_FILE), &Scene { title: &title, city, placed })?;
     files.push(SCENE_FILE);

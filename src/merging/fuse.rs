@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 
 use super::ledger::Ledger;
 use super::links::{SharedPhoto, pixel_scale, same_keypoints, tolerance_px};
-use super::sigma::{covariance, extent};
+use super::sigma::{covariance_in, extent};
 use super::{Fused, Part};
 use crate::format::colmap::{Encoding, FrameRecord, RigRecord, SENSOR_CAMERA, SensorRecord};
 use crate::geometry::{Camera, Point3, Similarity, Vector3};
@@ -30,14 +30,43 @@ const UNSEEN: &str = "no observation left";
 /// Joins the parts `placed`, in that order.
 pub(super) fn fuse(parts: &[Part], placed: &[usize], places: &[Option<Similarity>]) -> (Fused, Ledger) {
     let mut ledger = Ledger::open(parts, |p| placed.contains(&p));
-    let moved: Vec<Reconstruction> =
-        placed.iter().map(|&p| parts[p].sfm.transformed(&places[p].unwrap_or_else(Similarity::identity))).collect();
+    let moved: Vec<Moved<'_>> = placed.iter().map(|&p| Moved::of(&parts[p].sfm, places[p].as_ref())).collect();
     let cameras = Cameras::of(&moved);
     let mut sets = PointSets::of(&moved);
     let photos = fuse_photos(&moved, &mut sets, &mut ledger);
     let model = build(&moved, &cameras, &mut sets, photos, &mut ledger);
     let part_of_point = model.1.iter().map(|&k| placed[k] as u32).collect();
     (Fused { sfm: model.0, part_of_point }, ledger)
+}
+
+/// A part in the merged frame.
+struct Moved<'a> {
+    /// As it was given: keypoints and tracks are taken from here, since no frame changes them.
+    given: &'a Reconstruction,
+    /// Its points and poses where they belong.
+    posed: Reconstruction,
+}
+
+impl Moved<'_> {
+    fn of<'a>(given: &'a Reconstruction, merged_from_part: Option<&Similarity>) -> Moved<'a> {
+        let mut posed = given.skeleton();
+        if let Some(place) = merged_from_part {
+            posed.transform(place);
+        }
+        Moved { given, posed }
+    }
+
+    fn point(&self, point: PointIndex) -> Point3<f64> {
+        self.posed.points[point.0 as usize]
+    }
+
+    fn pose(&self, image: ImageIndex) -> &Image {
+        &self.posed.images[image.0 as usize]
+    }
+
+    fn keypoints(&self, image: ImageIndex) -> &[Observation] {
+        &self.given.images[image.0 as usize].observations
+    }
 }
 
 /// Which cameras are the same, and which belong to rigs of several.
@@ -50,10 +79,10 @@ struct Cameras {
 }
 
 impl Cameras {
-    fn of(moved: &[Reconstruction]) -> Cameras {
+    fn of(moved: &[Moved<'_>]) -> Cameras {
         let mut found = Cameras { cameras: Vec::new(), index: Vec::new(), alone: Vec::new() };
         let mut known: BTreeMap<(i32, u64, u64, Vec<u64>), u32> = BTreeMap::new();
-        for part in moved {
+        for part in moved.iter().map(|m| m.given) {
             let in_rigs = cameras_in_rigs(part);
             let alone: Vec<bool> = part.camera_ids.iter().map(|id| !in_rigs.contains(id)).collect();
             let index = part.cameras.iter().zip(&alone).map(|(camera, alone)| {
@@ -83,7 +112,7 @@ fn cameras_in_rigs(part: &Reconstruction) -> BTreeSet<u32> {
 
 /// Points of all parts, joined into sets.
 struct PointSets<'a> {
-    moved: &'a [Reconstruction],
+    moved: &'a [Moved<'a>],
     starts: Vec<usize>,
     parent: Vec<u32>,
     /// Members of a set, at its root; empty for a point alone.
@@ -93,12 +122,12 @@ struct PointSets<'a> {
 }
 
 impl PointSets<'_> {
-    fn of(moved: &[Reconstruction]) -> PointSets<'_> {
+    fn of<'a>(moved: &'a [Moved<'a>]) -> PointSets<'a> {
         let mut starts = vec![0];
         for part in moved {
-            starts.push(starts[starts.len() - 1] + part.points.len());
+            starts.push(starts[starts.len() - 1] + part.given.points.len());
         }
-        let radius: Vec<f64> = moved.iter().map(|part| extent(&part.points).1).collect();
+        let radius: Vec<f64> = moved.iter().map(|part| extent(&part.posed.points).1).collect();
         let bend = BEND_SHARE * radius.iter().copied().fold(f64::INFINITY, f64::min);
         let parent = (0..starts[moved.len()] as u32).collect();
         PointSets { moved, starts, parent, members: BTreeMap::new(), radius, bend }
@@ -123,7 +152,9 @@ impl PointSets<'_> {
 
     fn uncertainty(&self, key: u32) -> (Point3<f64>, Matrix3<f64>) {
         let (part, point) = self.part_of(key);
-        (self.moved[part].points[point.0 as usize], covariance(&self.moved[part], point, self.radius[part]))
+        let moved = &self.moved[part];
+        let covariance = covariance_in(&moved.posed, moved.given.track(point), point, self.radius[part]);
+        (moved.point(point), covariance)
     }
 
     /// Joins two points if they may be one; a part's own points stay apart.
@@ -159,7 +190,7 @@ impl PointSets<'_> {
         let members = self.members(root);
         if members.len() == 1 {
             let (part, point) = self.part_of(root);
-            return self.moved[part].points[point.0 as usize];
+            return self.moved[part].point(point);
         }
         let (mut information, mut sum) = (Matrix3::zeros(), Vector3::zeros());
         for key in members {
@@ -182,10 +213,10 @@ struct Photo {
     is_fused: bool,
 }
 
-fn fuse_photos(moved: &[Reconstruction], sets: &mut PointSets<'_>, ledger: &mut Ledger) -> Vec<Photo> {
+fn fuse_photos(moved: &[Moved<'_>], sets: &mut PointSets<'_>, ledger: &mut Ledger) -> Vec<Photo> {
     // A name that a part has twice counts as one only the first time.
     let mut groups: BTreeMap<(&str, usize), Vec<(usize, ImageIndex)>> = BTreeMap::new();
-    for (part, sfm) in moved.iter().enumerate() {
+    for (part, sfm) in moved.iter().map(|m| m.given).enumerate() {
         let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
         for (index, image) in sfm.images.iter().enumerate() {
             let times = seen.entry(&image.name).or_default();
@@ -197,7 +228,7 @@ fn fuse_photos(moved: &[Reconstruction], sets: &mut PointSets<'_>, ledger: &mut 
         .into_values()
         .map(|mut versions| {
             let support = |(part, image): &(usize, ImageIndex)| {
-                moved[*part].images[image.0 as usize].observations.iter().filter(|o| o.point.is_some()).count()
+                moved[*part].keypoints(*image).iter().filter(|o| o.point.is_some()).count()
             };
             // The version that sees most points has the better pose; of equals the first stays.
             versions.sort_by_key(|v| std::cmp::Reverse(support(v)));
@@ -209,21 +240,20 @@ fn fuse_photos(moved: &[Reconstruction], sets: &mut PointSets<'_>, ledger: &mut 
 }
 
 fn fuse_versions(
-    moved: &[Reconstruction],
+    moved: &[Moved<'_>],
     versions: &[(usize, ImageIndex)],
     sets: &mut PointSets<'_>,
     ledger: &mut Ledger,
 ) -> Photo {
     let (part, image) = versions[0];
     let keyed = |sets: &PointSets<'_>, part: usize, o: &Observation| o.point.map(|p| sets.key(part, p));
-    let own = &moved[part].images[image.0 as usize].observations;
-    let keypoints = own.iter().map(|o| (o.x_px, o.y_px, keyed(sets, part, o))).collect();
+    let keypoints = moved[part].keypoints(image).iter().map(|o| (o.x_px, o.y_px, keyed(sets, part, o))).collect();
     let mut photo = Photo { part, image, keypoints, is_fused: versions.len() > 1 };
     for &(other, other_image) in &versions[1..] {
         let shared = SharedPhoto { name: String::new(), in_a: image, in_b: other_image };
-        let scale = pixel_scale(&moved[part], &moved[other], &shared);
-        let tolerance = tolerance_px(&moved[part], &shared);
-        let theirs = &moved[other].images[other_image.0 as usize].observations;
+        let scale = pixel_scale(moved[part].given, moved[other].given, &shared);
+        let tolerance = tolerance_px(moved[part].given, &shared);
+        let theirs = moved[other].keypoints(other_image);
         let ours: Vec<Observation> = photo
             .keypoints
             .iter()
@@ -250,7 +280,7 @@ fn fuse_versions(
 
 /// True where the photograph's pose and camera, which come from another part, show the point near its keypoint.
 fn stays(
-    moved: &[Reconstruction],
+    moved: &[Moved<'_>],
     photo: &Photo,
     sets: &PointSets<'_>,
     key: u32,
@@ -259,9 +289,9 @@ fn stays(
     ledger: &mut Ledger,
 ) -> bool {
     let (part, point) = sets.part_of(key);
-    let camera = moved[photo.part].camera_of(photo.image);
-    let pose = &moved[photo.part].images[photo.image.0 as usize];
-    let Some([x, y]) = camera.project(&pose.cam_from_sfm(&moved[part].points[point.0 as usize])) else {
+    let camera = moved[photo.part].given.camera_of(photo.image);
+    let pose = moved[photo.part].pose(photo.image);
+    let Some([x, y]) = camera.project(&pose.cam_from_sfm(&moved[part].point(point))) else {
         ledger.observations.drop(BEHIND, 1);
         return false;
     };
@@ -275,7 +305,7 @@ fn stays(
 
 /// The model, and for each of its points the (placed) part that it comes from.
 fn build(
-    moved: &[Reconstruction],
+    moved: &[Moved<'_>],
     cameras: &Cameras,
     sets: &mut PointSets<'_>,
     mut photos: Vec<Photo>,
@@ -285,11 +315,11 @@ fn build(
     let (roots, number_of) = surviving(moved, &photos, sets, ledger);
     let points: Vec<Point3<f64>> = roots.iter().map(|r| sets.position(*r)).collect();
     let images: Vec<Image> =
-        photos.iter().enumerate().map(|(n, p)| image(moved, cameras, sets, p, n, &number_of)).collect();
+        photos.iter_mut().enumerate().map(|(n, p)| image(moved, cameras, sets, p, n, &number_of)).collect();
     let (track_starts, track_elements) = tracks(&images, points.len());
     let origins: Vec<(usize, PointIndex)> = roots.iter().map(|r| sets.part_of(*r)).collect();
     let color =
-        |(part, point): &(usize, PointIndex)| moved[*part].colors.get(point.0 as usize).copied().unwrap_or(GREY);
+        |(part, point): &(usize, PointIndex)| moved[*part].given.colors.get(point.0 as usize).copied().unwrap_or(GREY);
     let mut sfm = Reconstruction {
         cameras: cameras.cameras.clone(),
         camera_ids: (1..=cameras.cameras.len() as u32).collect(),
@@ -321,12 +351,7 @@ fn unlink_seconds(photos: &mut [Photo], sets: &PointSets<'_>, ledger: &mut Ledge
 }
 
 /// Points that are still seen (or never were), and their numbers in the result; the accounts of points and observations.
-fn surviving(
-    moved: &[Reconstruction],
-    photos: &[Photo],
-    sets: &PointSets<'_>,
-    ledger: &mut Ledger,
-) -> (Vec<u32>, Vec<u32>) {
+fn surviving(moved: &[Moved<'_>], photos: &[Photo], sets: &PointSets<'_>, ledger: &mut Ledger) -> (Vec<u32>, Vec<u32>) {
     let total = sets.parent.len();
     let mut seen = vec![false; total];
     for key in photos.iter().flat_map(|p| &p.keypoints).filter_map(|(_, _, key)| *key) {
@@ -340,7 +365,7 @@ fn surviving(
             continue;
         }
         let (part, point) = sets.part_of(key);
-        if seen[key as usize] || moved[part].track(point).is_empty() {
+        if seen[key as usize] || moved[part].given.track(point).is_empty() {
             number_of[key as usize] = roots.len() as u32;
             roots.push(key);
         } else {
@@ -352,17 +377,18 @@ fn surviving(
 }
 
 fn image(
-    moved: &[Reconstruction],
+    moved: &[Moved<'_>],
     cameras: &Cameras,
     sets: &PointSets<'_>,
-    photo: &Photo,
+    photo: &mut Photo,
     number: usize,
     number_of: &[u32],
 ) -> Image {
-    let own = &moved[photo.part].images[photo.image.0 as usize];
-    let observations = photo.keypoints.iter().map(|(x_px, y_px, key)| Observation {
-        x_px: *x_px,
-        y_px: *y_px,
+    let own = moved[photo.part].pose(photo.image);
+    // Taken over, not copied: both forms have the same size, so that collecting takes no further memory.
+    let observations = std::mem::take(&mut photo.keypoints).into_iter().map(|(x_px, y_px, key)| Observation {
+        x_px,
+        y_px,
         point: key.map(|k| PointIndex(number_of[sets.root(k) as usize])),
     });
     Image {
@@ -401,7 +427,7 @@ fn tracks(images: &[Image], points: usize) -> (Vec<u32>, Vec<(ImageIndex, u32)>)
 
 /// Mean reprojection errors: as they were, except of points that were fused or are seen in a fused photograph.
 fn errors(
-    moved: &[Reconstruction],
+    moved: &[Moved<'_>],
     sfm: &Reconstruction,
     sets: &PointSets<'_>,
     roots: &[u32],
@@ -412,7 +438,7 @@ fn errors(
         let track = sfm.track(PointIndex(number as u32));
         let is_touched =
             sets.members.contains_key(root) || track.iter().any(|(image, _)| photos[image.0 as usize].is_fused);
-        match moved[part].point_errors_px.get(point.0 as usize) {
+        match moved[part].given.point_errors_px.get(point.0 as usize) {
             Some(error) if !is_touched => *error,
             _ => mean_error(sfm, number, track),
         }
@@ -432,16 +458,16 @@ fn mean_error(sfm: &Reconstruction, number: usize, track: &[(ImageIndex, u32)]) 
 }
 
 /// Rigs and frames, where any part has them: a camera alone has a rig of its own, rigs of several are kept.
-fn colmap_parts(moved: &[Reconstruction], cameras: &Cameras, photos: &[Photo]) -> ColmapParts {
-    let is_text = |part: &Reconstruction| part.colmap.as_ref().is_some_and(|c| c.encoding == Encoding::Text);
+fn colmap_parts(moved: &[Moved<'_>], cameras: &Cameras, photos: &[Photo]) -> ColmapParts {
+    let is_text = |part: &Moved<'_>| part.given.colmap.as_ref().is_some_and(|c| c.encoding == Encoding::Text);
     let encoding = if moved.iter().all(is_text) { Encoding::Text } else { Encoding::Binary };
-    if !moved.iter().any(|part| part.colmap.as_ref().is_some_and(|c| c.rigs.is_some())) {
+    if !moved.iter().any(|part| part.given.colmap.as_ref().is_some_and(|c| c.rigs.is_some())) {
         return ColmapParts { encoding, rigs: None, frames: None };
     }
     let mut rigs = Vec::new();
     let mut rig_of_camera: Vec<Option<u32>> = vec![None; cameras.cameras.len()];
     let mut rig_of: BTreeMap<(usize, u32), u32> = BTreeMap::new();
-    for (part, sfm) in moved.iter().enumerate() {
+    for (part, sfm) in moved.iter().map(|m| &m.posed).enumerate() {
         for (camera, index) in cameras.index[part].iter().enumerate() {
             let known = &mut rig_of_camera[*index as usize];
             if cameras.alone[part][camera] && known.is_none() {
@@ -473,7 +499,7 @@ fn renumbered(sensor: SensorRecord, sfm: &Reconstruction, index: &[u32]) -> Sens
 }
 
 fn frames(
-    moved: &[Reconstruction],
+    moved: &[Moved<'_>],
     cameras: &Cameras,
     photos: &[Photo],
     rig_of_camera: &[Option<u32>],
@@ -483,7 +509,7 @@ fn frames(
     let mut number_of: BTreeMap<(usize, u32), usize> = BTreeMap::new();
     // The frame of every image of a rig, by part and image id.
     let mut frame_of: BTreeMap<(usize, u64), &FrameRecord> = BTreeMap::new();
-    for (part, sfm) in moved.iter().enumerate() {
+    for (part, sfm) in moved.iter().map(|m| &m.posed).enumerate() {
         for frame in sfm.colmap.iter().flat_map(|c| c.frames.iter().flatten()) {
             if rig_of.contains_key(&(part, frame.rig_id)) {
                 let images = frame.data.iter().filter(|(sensor, _)| sensor.kind == SENSOR_CAMERA);
@@ -492,7 +518,7 @@ fn frames(
         }
     }
     for (number, photo) in photos.iter().enumerate() {
-        let own = &moved[photo.part].images[photo.image.0 as usize];
+        let own = moved[photo.part].pose(photo.image);
         let camera = cameras.index[photo.part][own.camera.0 as usize];
         let data = (SensorRecord { kind: SENSOR_CAMERA, id: camera + 1 }, number as u64 + 1);
         let id = frames.len() as u32 + 1;

@@ -4,7 +4,7 @@
 //! these informations is that of linear triangulation (Hartley and Zisserman 2004, chapter 12).
 
 use crate::geometry::{Camera, CameraModel, Matrix3, Point3};
-use crate::reconstruction::{PointIndex, Reconstruction};
+use crate::reconstruction::{ImageIndex, PointIndex, Reconstruction};
 
 /// One sigma of a keypoint, pixels: detectors reach a third to a half, reconstructions leave about one.
 const KEYPOINT_SIGMA_PX: f64 = 1.0;
@@ -21,16 +21,26 @@ pub(super) fn focal_px(camera: &Camera) -> f64 {
 
 /// Covariance of a point in its reconstruction's frame.
 pub(super) fn covariance(sfm: &Reconstruction, point: PointIndex, radius: f64) -> Matrix3<f64> {
-    let x = &sfm.points[point.0 as usize];
+    covariance_in(sfm, sfm.track(point), point, radius)
+}
+
+/// The same in the frame of `posed`, whose tracks may be kept elsewhere.
+pub(super) fn covariance_in(
+    posed: &Reconstruction,
+    track: &[(ImageIndex, u32)],
+    point: PointIndex,
+    radius: f64,
+) -> Matrix3<f64> {
+    let x = &posed.points[point.0 as usize];
     let mut information = Matrix3::identity() * (WORST_SHARE * radius).powi(-2);
-    for (image, _) in sfm.track(point) {
-        let ray = x - sfm.images[image.0 as usize].center();
+    for (image, _) in track {
+        let ray = x - posed.images[image.0 as usize].center();
         let distance = ray.norm();
         if distance <= 0.0 || distance.is_nan() {
             continue;
         }
         let direction = ray / distance;
-        let per_unit = focal_px(sfm.camera_of(*image)) / (distance * KEYPOINT_SIGMA_PX);
+        let per_unit = focal_px(posed.camera_of(*image)) / (distance * KEYPOINT_SIGMA_PX);
         information += (Matrix3::identity() - direction * direction.transpose()) * per_unit.powi(2);
     }
     information.try_inverse().unwrap_or_else(|| Matrix3::identity() * radius.powi(2))

@@ -11,22 +11,41 @@ impl Reconstruction {
     /// rigs are scaled. Keypoints, tracks and calibrations stay.
     pub fn transformed(&self, city_from_sfm: &Similarity) -> Reconstruction {
         let mut moved = self.clone();
-        for point in &mut moved.points {
+        moved.transform(city_from_sfm);
+        moved
+    }
+
+    /// [`Reconstruction::transformed`] in place.
+    pub fn transform(&mut self, city_from_sfm: &Similarity) {
+        for point in &mut self.points {
             *point = city_from_sfm.apply(point);
         }
-        for normal in &mut moved.normals {
+        for normal in &mut self.normals {
             *normal = city_from_sfm.rotation * *normal;
         }
-        for image in &mut moved.images {
+        for image in &mut self.images {
             image.set_pose(&pose_in_city(&image.pose(), city_from_sfm));
         }
-        if let Some(colmap) = &mut moved.colmap {
+        if let Some(colmap) = &mut self.colmap {
             for frame in colmap.frames.iter_mut().flatten() {
                 frame.rig_from_world = pose_in_city(&frame.rig_from_world, city_from_sfm);
             }
             colmap.rigs.iter_mut().flatten().for_each(|rig| scale_rig(rig, city_from_sfm.scale));
         }
-        moved
+    }
+
+    /// What depends on the frame: points, poses, rigs and frames, and the cameras, but neither keypoints nor tracks, which are
+    /// most of a reconstruction.
+    pub fn skeleton(&self) -> Reconstruction {
+        let pose = |image: &Image| Image { name: image.name.clone(), observations: Vec::new(), ..*image };
+        Reconstruction {
+            cameras: self.cameras.clone(),
+            camera_ids: self.camera_ids.clone(),
+            images: self.images.iter().map(pose).collect(),
+            points: self.points.clone(),
+            colmap: self.colmap.clone(),
+            ..Reconstruction::default()
+        }
     }
 }
 

@@ -1,15 +1,22 @@
 //! `cityweld merge` from files to files, on a scene that the test makes itself: a room's corner seen by five cameras, the
 //! third of which is in both parts.
 
+mod json_schema;
+
 use std::path::Path;
 use std::process::Command;
 
 use cityweld::export::colmap::write_colmap;
+use cityweld::export::merge_report;
 use cityweld::geometry::{Camera, CameraModel, Point3, Rotation3, Similarity, Vector3};
-use cityweld::merging::{MergeOptions, MergeVerdict, Part, merge};
+use cityweld::merging::{Anchor, MergeOptions, MergeVerdict, Part, merge};
 use cityweld::reconstruction::{
     CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, read_reconstruction,
 };
+use cityweld::robust::{Chart, Matrix7};
+use cityweld::verdict::{Freedom, Support};
+use json_schema::keeps;
+use serde_json::Value;
 
 fn camera() -> Camera {
     Camera { model: CameraModel::SimplePinhole, width_px: 1000, height_px: 800, params: vec![900.0, 500.0, 400.0] }
@@ -215,4 +222,106 @@ fn one_part_given_twice_is_the_identity() {
     let pose = found.parts[1].merged_from_part.unwrap();
     assert!((pose.scale - 1.0).abs() < 1e-9 && pose.translation.norm() < 1e-9);
     assert_eq!(found.ledger.images.kept, 3);
+}
+
+/// The part in the world's frame, as a city would hold it.
+fn anchor(world_from_part: Similarity, determined: bool) -> Anchor {
+    let along_up = Freedom { name: "along up".into(), direction: Vector3::z(), sigma: 3.0, unit: "m", determined };
+    Anchor {
+        common_from_part: world_from_part,
+        determined,
+        chart: Chart { center: Point3::new(0.0, 0.0, 10.0), radius: 5.0 },
+        information: Matrix7::identity() * 400.0,
+        reason: "in the city undetermined: along up".into(),
+        freedoms: vec![along_up],
+        support: Support::default(),
+    }
+}
+
+#[test]
+fn every_kind_of_report_keeps_to_the_published_schema() {
+    let schema: Value = serde_json::from_str(include_str!("../assets/merge.schema.json")).unwrap();
+    let [first, second] = two_parts();
+    let stranger = given("stranger", part(0..3, &second_from_world(), |view| format!("elsewhere/{view}.jpg")));
+    let anchored = |part: &Part, determined| Part {
+        anchor: Some(anchor(
+            if part.name == "first" { Similarity::identity() } else { second_from_world().inverse() },
+            determined,
+        )),
+        ..part.clone()
+    };
+    for (parts, verdict) in [
+        (vec![first.clone(), second.clone()], "merged"),
+        (vec![first.clone(), second.clone(), stranger.clone()], "partial"),
+        (vec![first.clone(), stranger.clone()], "failed"),
+        (vec![anchored(&first, true), anchored(&second, true)], "merged"),
+        (
+            vec![anchored(&first, false), Part { anchor: Some(anchor(Similarity::identity(), false)), ..stranger }],
+            "undetermined",
+        ),
+    ] {
+        let found = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+        let report: Value = serde_json::from_str(&merge_report(&found).unwrap()).unwrap();
+        assert_eq!(report["verdict"], verdict, "{report:#}");
+        assert!(keeps(&report, &schema, &schema), "{report:#}");
+        // Every key of a part is one that the schema names, and a place comes with what holds it.
+        let broken = Value::from_iter([("schema", "cityweld.merge/1")]);
+        assert!(!keeps(&broken, &schema, &schema));
+        let placed = report["parts"].as_array().unwrap().iter().filter(|p| p["placed"] == true);
+        let free = placed.filter(|p| p["freedoms"].as_array().unwrap().len() == 7).count();
+        let in_city = report["frame"] == "the city's";
+        let expected = found.parts.iter().filter(|p| p.merged_from_part.is_some()).count();
+        assert_eq!(free, if in_city { expected } else { expected.saturating_sub(1) }, "{report:#}");
+    }
+}
+
+#[test]
+fn a_part_of_mirrored_photographs_stays_apart() {
+    let [first, second] = two_parts();
+    // A sound model of a mirrored place: keypoints, points and cameras are reflected alike.
+    let mut mirrored = second.clone();
+    let flip = |v: &Vector3<f64>| Vector3::new(-v.x, v.y, v.z);
+    mirrored.sfm.points.iter_mut().for_each(|p| *p = Point3::from(flip(&p.coords)));
+    for image in &mut mirrored.sfm.images {
+        let mut turn = image.cam_from_sfm_rotation.into_inner();
+        for (i, j) in [(0, 1), (0, 2), (1, 0), (2, 0)] {
+            turn[(i, j)] = -turn[(i, j)];
+        }
+        image.cam_from_sfm_rotation = Rotation3::from_matrix_unchecked(turn);
+        image.cam_from_sfm_translation = flip(&image.cam_from_sfm_translation);
+        image.observations.iter_mut().for_each(|o| o.x_px = 1000.0 - o.x_px);
+    }
+    let x = mirrored.sfm.images[0].cam_from_sfm(&mirrored.sfm.points[0]);
+    assert!(x.z > 0.0, "the mirrored model is sound");
+    // And one whose depths are turned inside out, at the same pixels.
+    let mut inside_out = second;
+    inside_out.sfm.points.iter_mut().for_each(|p| *p = Point3::from(-p.coords));
+    inside_out.sfm.images.iter_mut().for_each(|i| i.cam_from_sfm_translation *= -1.0);
+    for (other, why) in [(mirrored, "different keypoints"), (inside_out, "contradicts itself")] {
+        let found = merge(&[first.clone(), other], &MergeOptions::default(), &|_| ()).unwrap();
+        assert_eq!(found.verdict, MergeVerdict::Failed);
+        assert!(found.reason.contains(why), "{}", found.reason);
+    }
+}
+
+#[test]
+fn keeps_the_rigs_and_frames_of_both_parts() {
+    let rig =
+        read_reconstruction(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reconstruction/rig_bin")).unwrap();
+    let again = rig.transformed(&second_from_world());
+    let found = merge(&[given("a", rig.clone()), given("b", again)], &MergeOptions::default(), &|_| ()).unwrap();
+    assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
+    let model = found.model.unwrap().sfm;
+    let room = tempfile::tempdir().unwrap();
+    write_colmap(room.path(), &model).unwrap();
+    // Reading tells of images whose poses differ from those by their rig and frame.
+    let read = read_reconstruction(room.path()).unwrap();
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+    let (before, after) = (rig.colmap.unwrap(), read.colmap.unwrap());
+    let cameras_in_rigs = |rigs: &[cityweld::format::colmap::RigRecord]| {
+        rigs.iter().filter(|r| !r.others.is_empty()).map(|r| 1 + r.others.len()).max()
+    };
+    assert_eq!(cameras_in_rigs(&before.rigs.unwrap()), cameras_in_rigs(&after.rigs.unwrap()));
+    let seen: usize = after.frames.unwrap().iter().map(|f| f.data.len()).sum();
+    assert_eq!(seen, read.images.len());
 }

@@ -1,55 +1,15 @@
 //! `assets/problem.schema.json` says what `cityweld solve` reads and writes: every golden problem keeps to it, every answer too,
 //! and what breaks it is refused.
 
+mod json_schema;
+
 use cityweld::solvers::problem::{Refusal, answer_json, solve_json};
+use json_schema::keeps;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 fn schema() -> Value {
     serde_json::from_str(include_str!("../assets/problem.schema.json")).unwrap()
-}
-
-/// Whether a value keeps to a schema: the keywords that this schema uses, and a panic at any other.
-fn keeps(value: &Value, schema: &Value, root: &Value) -> bool {
-    schema.as_object().expect("a schema is an object").iter().all(|(keyword, want)| match keyword.as_str() {
-        "$schema" | "$defs" | "title" | "description" => true,
-        "$ref" => keeps(value, root.pointer(&want.as_str().unwrap()[1..]).expect("a reference leads somewhere"), root),
-        "type" => has_type(value, want.as_str().unwrap()),
-        "enum" => want.as_array().unwrap().contains(value),
-        "allOf" => want.as_array().unwrap().iter().all(|part| keeps(value, part, root)),
-        "anyOf" => want.as_array().unwrap().iter().any(|part| keeps(value, part, root)),
-        "required" => want.as_array().unwrap().iter().all(|key| value.get(key.as_str().unwrap()).is_some()),
-        "properties" => want
-            .as_object()
-            .unwrap()
-            .iter()
-            .all(|(key, part)| value.get(key).is_none_or(|field| keeps(field, part, root))),
-        "additionalProperties" => {
-            value.as_object().is_none_or(|fields| fields.keys().all(|key| schema["properties"].get(key).is_some()))
-        }
-        "items" => value.as_array().is_none_or(|items| items.iter().all(|item| keeps(item, want, root))),
-        "minItems" => value.as_array().is_none_or(|items| items.len() as u64 >= want.as_u64().unwrap()),
-        "maxItems" => value.as_array().is_none_or(|items| items.len() as u64 <= want.as_u64().unwrap()),
-        "minimum" => value.as_f64().is_none_or(|number| number >= want.as_f64().unwrap()),
-        "maximum" => value.as_f64().is_none_or(|number| number <= want.as_f64().unwrap()),
-        "exclusiveMinimum" => value.as_f64().is_none_or(|number| number > want.as_f64().unwrap()),
-        // The one pattern there is: a list of beginnings.
-        "pattern" => {
-            value.as_str().is_none_or(|text| text.starts_with("degenerate: ") || text.starts_with("ill-formed: "))
-        }
-        other => panic!("the schema uses {other}, which this test does not know"),
-    })
-}
-
-fn has_type(value: &Value, name: &str) -> bool {
-    match name {
-        "object" => value.is_object(),
-        "array" => value.is_array(),
-        "string" => value.is_string(),
-        "number" => value.is_number(),
-        "integer" => value.is_u64() || value.is_i64(),
-        other => panic!("the schema uses the type {other}, which this test does not know"),
-    }
 }
 
 fn golden() -> Option<PathBuf> {

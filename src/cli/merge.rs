@@ -9,7 +9,6 @@ use cityweld::format::read_start;
 use cityweld::imagery::{ImageryError, SuperpixelOptions, SuperpixelSource, lift_superpixels};
 use cityweld::merging::{Anchor, Merge, MergeOptions, MergeVerdict, Part, merge};
 use cityweld::reconstruction::read_reconstruction;
-use cityweld::verdict::Verdict;
 use cityweld::{AlignOptions, Up};
 
 use super::args::MergeArgs;
@@ -115,13 +114,9 @@ fn anchor(part: &Part, city: &CityModel, start: &Path, session: &Session) -> Res
         AlignOptions { start: read_start(start)?, fixed_scale: None, up: Up::Auto, seed: session.common.seed };
     let progress = |stage, done, all| session.voice.bar.show(stage, done, all);
     let found = cityweld::align(city, &part.sfm, part.superpixels.as_ref(), &options, &progress);
-    let reason = format!("in the city {}: {}", found.verdict.word(), found.reason);
-    session.voice.detail(&format!("{}: {reason}", part.name));
-    let (common_from_part, determined) = match found.best {
-        Some(best) => (best, found.verdict == Verdict::Aligned),
-        None => (options.start.city_from_sfm, false),
-    };
-    Ok(Anchor { common_from_part, determined, reason })
+    let anchor = Anchor::of(&found, &part.sfm, options.start.city_from_sfm);
+    session.voice.detail(&format!("{}: {}", part.name, anchor.reason));
+    Ok(anchor)
 }
 
 /// The last components of the paths, with as many of their parents as it takes to tell them apart.

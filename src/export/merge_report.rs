@@ -5,16 +5,18 @@ use std::io::Write;
 use std::path::Path;
 
 use serde::Serialize;
+use serde_json::value::RawValue;
 
 use super::colmap::write_colmap;
 use super::file::{ExportError, write_file};
 use super::folder::{COLMAP_FOLDER, POINTS_FILE, SCENE_FILE};
 use super::gltf::{Placed, Scene, write_scene};
 use super::ply::write_ply;
-use super::report::{ReportError, SimilarityJson};
+use super::report::{ReportError, SimilarityJson, SupportJson, freedom_json};
 use crate::city::CityModel;
 use crate::geometry::Similarity;
-use crate::merging::{Account, Edge, Merge, PartPlace};
+use crate::merging::{Account, Edge, Merge, PartPlace, PartSupport};
+use crate::verdict::Freedom;
 
 pub const MERGE_REPORT_FILE: &str = "merge.json";
 
@@ -66,6 +68,10 @@ pub fn merge_report(merge: &Merge) -> Result<String, ReportError> {
     if !poses.into_iter().all(is_finite) {
         return Err(ReportError::NotFinite { field: "transform" });
     }
+    let is_known = |f: &Freedom| f.sigma.is_finite() && f.direction.iter().all(|v| v.is_finite());
+    if !merge.parts.iter().flat_map(|p| &p.freedoms).all(is_known) {
+        return Err(ReportError::NotFinite { field: "freedoms" });
+    }
     if !merge.edges.iter().all(|e| e.rms.is_finite()) {
         return Err(ReportError::NotFinite { field: "edges" });
     }
@@ -107,6 +113,7 @@ struct PartJson<'a> {
     transform: Option<SimilarityJson>,
     best_candidate: Option<SimilarityJson>,
     reason: Option<&'a str>,
+    freedoms: Vec<Box<RawValue>>,
     support: PartSupportJson,
 }
 
@@ -114,6 +121,17 @@ struct PartJson<'a> {
 struct PartSupportJson {
     images: usize,
     points: usize,
+    edges: usize,
+    shared_photos: usize,
+    inliers: usize,
+    city: Option<SupportJson>,
+}
+
+impl PartSupportJson {
+    fn of(support: &PartSupport) -> PartSupportJson {
+        let PartSupport { images, points, edges, shared_photos, inliers, ref city } = *support;
+        PartSupportJson { images, points, edges, shared_photos, inliers, city: city.as_ref().map(SupportJson::of) }
+    }
 }
 
 impl PartJson<'_> {
@@ -124,7 +142,8 @@ impl PartJson<'_> {
             transform: place.merged_from_part.as_ref().map(SimilarityJson::of).transpose()?,
             best_candidate: place.best_candidate.as_ref().map(SimilarityJson::of).transpose()?,
             reason: place.reason.as_deref(),
-            support: PartSupportJson { images: place.images, points: place.points },
+            freedoms: place.freedoms.iter().map(freedom_json).collect::<Result<_, _>>()?,
+            support: PartSupportJson::of(&place.support),
         })
     }
 }

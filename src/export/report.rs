@@ -148,7 +148,7 @@ struct AlternativeJson<'a> {
 }
 
 #[derive(Serialize)]
-struct SupportJson {
+pub(super) struct SupportJson {
     points: usize,
     trusted_points: usize,
     planes: usize,
@@ -157,7 +157,7 @@ struct SupportJson {
 }
 
 impl SupportJson {
-    fn of(support: &Support) -> SupportJson {
+    pub(super) fn of(support: &Support) -> SupportJson {
         let Support { points, trusted_points, planes, rms_m, median_m } = *support;
         SupportJson { points, trusted_points, planes, rms_m, median_m }
     }
@@ -170,7 +170,7 @@ struct SearchJson<'a> {
     seed: u64,
 }
 
-fn freedom_json(freedom: &Freedom) -> Result<Box<RawValue>, serde_json::Error> {
+pub(super) fn freedom_json(freedom: &Freedom) -> Result<Box<RawValue>, serde_json::Error> {
     #[derive(Serialize)]
     struct FreedomJson<'a> {
         name: &'a str,

@@ -1,28 +1,13 @@
-//! All parts at once: which edges hold, where every part stands.
-//!
-//! Method       the strongest edges that join everything (greatest spanning tree by inliers) give the start; every further edge closes
-//!              a cycle and must agree with it, or the edge that the others contradict is left out by name; then all similarities are adjusted together to all edges that agree, each with its
-//!              own information (Gauss-Newton, weights that bound an edge's pull)
+//! All parts at once: which ties hold, where every part stands, and what that makes the whole.
 
-use nalgebra::{DMatrix, DVector};
-
+use super::adjust::{Held, adjust};
+use super::cycles::Network;
 use super::judge::Opinion;
 use super::pairwise::{Edge, EdgeSource, Link};
-use super::sigma::extent;
-use super::{MergeVerdict, Part, PartPlace};
-use crate::geometry::{Point3, Similarity};
-use crate::robust::{Chart, Vector7};
-
-/// A cycle that does not close to this share of the scene's radius has a wrong edge in it.
-const CYCLE_GAP: f64 = 0.05;
-/// What an edge of a cycle with an unknown wrong edge is told by.
-const CYCLE_OPEN: &str = "a cycle does not close";
-/// An edge further off than this many sigmas pulls no harder.
-const EDGE_GATE: f64 = 5.0;
-const ROUNDS: usize = 20;
-const CONVERGED: f64 = 1e-10;
-/// Step of numerical derivatives, share of the radius.
-const DIFFERENCE: f64 = 1e-6;
+use super::{MergeVerdict, Part, PartPlace, PartSupport, freedoms};
+use crate::geometry::Similarity;
+use crate::robust::{Chart, Matrix7};
+use crate::verdict::Freedom;
 
 pub(super) struct Solved {
     pub verdict: MergeVerdict,
@@ -32,244 +17,75 @@ pub(super) struct Solved {
     pub edges: Vec<Edge>,
 }
 
-pub(super) fn solve(parts: &[Part], order: &[usize], mut links: Vec<Link>) -> Solved {
-    let has_anchors = parts.iter().any(|p| p.anchor.is_some());
-    let place = |links: &[Link]| {
-        let mut poses = anchored(parts);
-        spread(&mut poses, links, parts, order);
-        poses
-    };
-    let mut poses = settle(&mut links, parts, &place);
-    retire_unplaced(&poses, &mut links);
-    adjust(&mut poses, &links, parts);
-    let candidates = candidates(parts, &poses, &links);
-    let frame = if has_anchors && parts.iter().zip(&poses).any(|(p, t)| p.anchor.is_some() && t.is_some()) {
-        "the city's".to_owned()
-    } else {
-        parts.iter().zip(&poses).find(|(_, t)| t.is_some()).map_or("none".into(), |(p, _)| format!("{}'s", p.name))
+pub(super) fn solve(parts: &[Part], order: &[usize], links: Vec<Link>) -> Solved {
+    let mut network = Network::new(parts, order, links);
+    let mut poses = network.settle();
+    network.retire_unplaced(&poses);
+    let held = adjust(&network, &mut poses);
+    let candidates = candidates(parts, &poses, &network.links);
+    let in_city = network.anchored.contains(&true);
+    let frame = match parts.iter().zip(&poses).find(|(_, pose)| pose.is_some()) {
+        Some(_) if in_city => "the city's".to_owned(),
+        Some((part, _)) => format!("{}'s", part.name),
+        None => "none".to_owned(),
     };
     let place = |p: usize| PartPlace {
         name: parts[p].name.clone(),
         merged_from_part: poses[p],
         best_candidate: candidates[p],
-        reason: poses[p].is_none().then(|| why_not(p, parts, &links)),
-        images: parts[p].sfm.images.len(),
-        points: parts[p].sfm.points.len(),
+        reason: poses[p].is_none().then(|| why_not(p, parts, &network.links)),
+        freedoms: match (&held[p], poses[p]) {
+            (Some(held), _) if in_city => freedoms::in_the_city(held),
+            (Some(held), _) => freedoms::in_a_parts_frame(held),
+            (None, Some(_)) => Vec::new(),
+            (None, None) => loose_freedoms(p, parts, &candidates, &network.links),
+        },
+        support: support(p, parts, &network.links),
     };
     let places: Vec<PartPlace> = (0..parts.len()).map(place).collect();
-    let (verdict, reason) = verdict(&places, &links, parts);
-    Solved { verdict, reason, frame, places, edges: edges(parts, &poses, links) }
+    let (verdict, reason) = verdict(&places, &network);
+    Solved { verdict, reason, frame, places, edges: edges(&poses, network) }
 }
 
-/// The parts that stand in the common frame by themselves; with fewer than two of them, and no edges, nothing is joined.
-fn anchored(parts: &[Part]) -> Vec<Option<Similarity>> {
-    parts.iter().map(|p| p.anchor.as_ref().filter(|a| a.determined).map(|a| a.common_from_part)).collect()
-}
-
-/// Carries places along the strongest edges. Without an anchor the largest group of joined parts is placed, in the frame
-/// of the one that was given first.
-fn spread(poses: &mut [Option<Similarity>], links: &[Link], parts: &[Part], order: &[usize]) {
-    let mut strongest: Vec<&Link> = links.iter().filter(|l| l.edge.used).collect();
-    strongest.sort_by_key(|l| std::cmp::Reverse(l.edge.inliers));
-    let mut group: Vec<usize> = (0..parts.len()).collect();
-    let mut tree: Vec<&Link> = Vec::new();
-    for link in strongest {
-        let (a, b) = (group[link.edge.a], group[link.edge.b]);
-        if a != b {
-            group.iter_mut().filter(|g| **g == b).for_each(|g| *g = a);
-            tree.push(link);
-        }
-    }
-    if poses.iter().all(Option::is_none) {
-        let size = |g: usize| group.iter().filter(|other| **other == g).count();
-        let points = |g: usize| -> usize {
-            (0..parts.len()).filter(|p| group[*p] == g).map(|p| parts[p].sfm.points.len()).sum()
-        };
-        // The last of equals is taken, so the canonical order is walked backwards.
-        let largest = order.iter().rev().map(|p| group[*p]).max_by_key(|g| (size(*g), points(*g)));
-        if let Some(g) = largest.filter(|g| size(*g) > 1) {
-            let root = (0..parts.len()).find(|p| group[*p] == g).unwrap_or(0);
-            poses[root] = Some(Similarity::identity());
-        }
-    }
-    // Each sweep reaches at least one further part.
-    for _ in 0..parts.len() {
-        for link in &tree {
-            let Some(fit) = &link.fit else { continue };
-            match (poses[link.edge.a], poses[link.edge.b]) {
-                (Some(a), None) => poses[link.edge.b] = Some(a * fit.a_from_b),
-                (None, Some(b)) => poses[link.edge.a] = Some(b * fit.a_from_b.inverse()),
-                _ => {}
-            }
-        }
+fn support(part: usize, parts: &[Part], links: &[Link]) -> PartSupport {
+    let own = || links.iter().map(|l| &l.edge).filter(|e| e.used && (e.a == part || e.b == part));
+    let photos: std::collections::BTreeSet<&String> = own().flat_map(|e| &e.shared_photos).collect();
+    PartSupport {
+        images: parts[part].sfm.images.len(),
+        points: parts[part].sfm.points.len(),
+        edges: own().count(),
+        shared_photos: photos.len(),
+        inliers: own().map(|e| e.inliers).sum(),
+        city: parts[part].anchor.as_ref().map(|a| a.support.clone()),
     }
 }
 
-/// How far an edge is from what the places say, in its chart's unknowns.
-fn gap(link: &Link, a: &Similarity, b: &Similarity) -> Option<(Vector7, f64)> {
-    let fit = link.fit.as_ref()?;
-    let motion = (a.inverse() * *b) * fit.a_from_b.inverse();
-    let (center, radius) = (fit.chart.center, fit.chart.radius);
-    let turn = motion.rotation.scaled_axis() * radius;
-    let shift = motion.apply(&center) - center;
-    let scale = motion.scale.ln() * radius;
-    Some((Vector7::from_column_slice(&[turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, scale]), radius))
-}
-
-/// How far a motion carries a scene, as a share of its radius: turned, shifted and scaled.
-fn motion_share(motion: &Similarity, center: &Point3<f64>, radius: f64) -> f64 {
-    let shift = (motion.apply(center) - center).norm() / radius;
-    motion.rotation.angle().hypot(shift).hypot(motion.scale.ln())
-}
-
-/// The edges in use that do not close their cycle.
-fn contradictions(poses: &[Option<Similarity>], links: &[Link]) -> Vec<usize> {
-    let is_open = |l: &Link| gap_share(poses, l).is_some_and(|share| share > CYCLE_GAP);
-    (0..links.len()).filter(|&i| links[i].edge.used && is_open(&links[i])).collect()
-}
-
-fn gap_share(poses: &[Option<Similarity>], link: &Link) -> Option<f64> {
-    let (unknowns, radius) = gap(link, &poses[link.edge.a]?, &poses[link.edge.b]?)?;
-    Some(unknowns.norm() / radius)
-}
-
-/// Places the parts without the edges that contradict the others. A cycle that does not close says that one of its edges is
-/// wrong, but only the other cycles say which one: where several are as likely, the parts whose place hangs on the choice
-/// get none. `place` carries places along the edges in use.
-fn settle(
-    links: &mut [Link],
-    parts: &[Part],
-    place: &dyn Fn(&[Link]) -> Vec<Option<Similarity>>,
-) -> Vec<Option<Similarity>> {
-    let mut poses = place(links);
-    let mut doubtful = vec![false; parts.len()];
-    while !contradictions(&poses, links).is_empty() {
-        let suspects = suspects(links, &poses, place);
-        let Some((weakest, settled)) = suspects.first().cloned() else { break };
-        for (_, other) in &suspects[1..] {
-            (0..parts.len()).for_each(|p| doubtful[p] |= differs(&parts[p], settled[p], other[p]));
-        }
-        let edge = &mut links[weakest].edge;
-        edge.used = false;
-        let names = format!("{} and {}", parts[edge.a].name, parts[edge.b].name);
-        let share = gap_share(&settled, &links[weakest]).unwrap_or(f64::INFINITY);
-        links[weakest].edge.reason = Some(match suspects.len() {
-            1 => format!("puts {names} {:.1} % of the extent off from where the other edges put them", 50.0 * share),
-            n => format!(
-                "{CYCLE_OPEN}: the edges round {names} disagree by {:.1} % of the extent, and any of {n} may be the wrong one; \
-                 a further shared photograph would tell",
-                50.0 * share
-            ),
-        });
-        poses = settled;
+/// What is known of a part that has no place: as the city sees it, or as the edge that suggests its place.
+fn loose_freedoms(part: usize, parts: &[Part], candidates: &[Option<Similarity>], links: &[Link]) -> Vec<Freedom> {
+    if let Some(anchor) = &parts[part].anchor {
+        return anchor.freedoms.clone();
     }
-    (0..parts.len()).map(|p| poses[p].filter(|_| !doubtful[p])).collect()
-}
-
-/// The edges without which fewest contradictions are left, the weakest first, each with the places that the others give.
-fn suspects(
-    links: &[Link],
-    poses: &[Option<Similarity>],
-    place: &dyn Fn(&[Link]) -> Vec<Option<Similarity>>,
-) -> Vec<(usize, Vec<Option<Similarity>>)> {
-    let placed = |poses: &[Option<Similarity>]| poses.iter().flatten().count();
-    let mut trials = Vec::new();
-    for index in (0..links.len()).filter(|&i| links[i].edge.used) {
-        let mut others = links.to_vec();
-        others[index].edge.used = false;
-        let without = place(&others);
-        // An edge without which a part has no place at all is in no cycle.
-        let is_in_cycle = placed(&without) == placed(poses);
-        // One that agrees with the places of the others is not to blame.
-        let is_off = gap_share(&without, &links[index]).is_some_and(|share| share > CYCLE_GAP);
-        if is_in_cycle && is_off {
-            trials.push((contradictions(&without, &others).len(), links[index].edge.inliers, index, without));
-        }
-    }
-    trials.sort_by_key(|(left, inliers, index, _)| (*left, *inliers, *index));
-    let fewest = trials.first().map(|t| t.0);
-    trials.into_iter().filter(|t| Some(t.0) == fewest).map(|(_, _, index, without)| (index, without)).collect()
-}
-
-fn differs(part: &Part, one: Option<Similarity>, other: Option<Similarity>) -> bool {
-    let (Some(one), Some(other)) = (one, other) else { return one.is_some() != other.is_some() };
-    let (center, radius) = extent(&part.sfm.points);
-    motion_share(&(one.inverse() * other), &center, radius) > CYCLE_GAP
-}
-
-/// Edges whose parts were not placed carry nothing.
-fn retire_unplaced(poses: &[Option<Similarity>], links: &mut [Link]) {
-    for link in links.iter_mut().filter(|l| l.edge.used) {
-        if poses[link.edge.a].is_none() || poses[link.edge.b].is_none() {
-            link.edge.used = false;
-            link.edge.reason = Some("its parts belong to another group than the one that was placed".into());
-        }
-    }
-}
-
-/// Least squares over all similarities; the anchors, or else the first placed part, stay.
-fn adjust(poses: &mut [Option<Similarity>], links: &[Link], parts: &[Part]) {
-    let any_anchor = parts.iter().any(|p| p.anchor.as_ref().is_some_and(|a| a.determined));
-    let first = poses.iter().position(Option::is_some);
-    let is_fixed = |p: usize| match any_anchor {
-        true => parts[p].anchor.as_ref().is_some_and(|a| a.determined),
-        false => Some(p) == first,
+    let Some(pose) = candidates[part] else { return Vec::new() };
+    let is_open = |l: &&Link| matches!(l.opinion, Opinion::Open(_)) && l.edge.a.max(l.edge.b) == part;
+    let Some((link, fit)) = links.iter().find(is_open).and_then(|l| Some((l, l.fit.as_ref()?))) else {
+        return Vec::new();
     };
-    let free: Vec<usize> = (0..parts.len()).filter(|&p| poses[p].is_some() && !is_fixed(p)).collect();
-    let used: Vec<&Link> = links.iter().filter(|l| l.edge.used).collect();
-    if free.is_empty() || used.len() <= free.len() && !any_anchor {
-        // A tree has no contradictions to share out.
-        return;
-    }
-    let charts: Vec<Chart> = (0..parts.len())
-        .map(|p| {
-            let (center, radius) = extent(&parts[p].sfm.points);
-            let pose = poses[p].unwrap_or_else(Similarity::identity);
-            Chart { center: pose.apply(&center), radius: pose.scale * radius }
-        })
-        .collect();
-    for _ in 0..ROUNDS {
-        let Some(step) = joint_step(poses, &used, &free, &charts) else { return };
-        let mut largest: f64 = 0.0;
-        for (k, &p) in free.iter().enumerate() {
-            let own = Vector7::from_iterator(step.rows(7 * k, 7).iter().copied());
-            largest = largest.max(own.norm() / charts[p].radius);
-            poses[p] = poses[p].map(|pose| charts[p].moved(&pose, &own));
-        }
-        if largest < CONVERGED {
-            return;
-        }
-    }
+    // The unknowns are in the frame of the edge's first part, which is the common one or this part's own.
+    let common_from_chart = if link.edge.a == part { pose } else { Similarity::identity() };
+    let chart = Chart {
+        center: common_from_chart.apply(&fit.chart.center),
+        radius: common_from_chart.scale * fit.chart.radius,
+    };
+    let information = turned(&fit.information, &common_from_chart);
+    freedoms::in_a_parts_frame(&Held { chart, information })
 }
 
-fn joint_step(poses: &[Option<Similarity>], used: &[&Link], free: &[usize], charts: &[Chart]) -> Option<DVector<f64>> {
-    let size = 7 * free.len();
-    let (mut information, mut gradient) = (DMatrix::zeros(size, size), DVector::zeros(size));
-    for link in used {
-        let (Some(a), Some(b), Some(fit)) = (poses[link.edge.a], poses[link.edge.b], &link.fit) else { continue };
-        let Some((residual, _)) = gap(link, &a, &b) else { continue };
-        let mut jacobian = DMatrix::zeros(7, size);
-        for (k, &p) in free.iter().enumerate() {
-            for column in 0..7 {
-                let mut nudge = Vector7::zeros();
-                nudge[column] = DIFFERENCE * charts[p].radius;
-                let moved = match p {
-                    p if p == link.edge.a => gap(link, &charts[p].moved(&a, &nudge), &b),
-                    p if p == link.edge.b => gap(link, &a, &charts[p].moved(&b, &nudge)),
-                    _ => None,
-                };
-                if let Some((nudged, _)) = moved {
-                    jacobian.set_column(7 * k + column, &((nudged - residual) / nudge[column]));
-                }
-            }
-        }
-        let off = residual.dot(&(fit.information * residual)).max(0.0);
-        let weight = (1.0 + off / (7.0 * EDGE_GATE * EDGE_GATE)).recip();
-        let weighted = DMatrix::from_iterator(7, 7, (fit.information * weight).iter().copied());
-        information += jacobian.transpose() * &weighted * &jacobian;
-        gradient += jacobian.transpose() * &weighted * DVector::from_iterator(7, residual.iter().copied());
-    }
-    information.cholesky().map(|c| -c.solve(&gradient))
+/// Information in the unknowns of another frame.
+fn turned(information: &Matrix7, to_from: &Similarity) -> Matrix7 {
+    let mut turn = Matrix7::identity();
+    turn.fixed_view_mut::<3, 3>(0, 0).copy_from(to_from.rotation.matrix());
+    turn.fixed_view_mut::<3, 3>(3, 3).copy_from(to_from.rotation.matrix());
+    turn * information * turn.transpose() / (to_from.scale * to_from.scale)
 }
 
 /// Where parts that are not placed would fit best: anchors that are not determined, and open edges.
@@ -307,7 +123,7 @@ fn why_not(part: usize, parts: &[Part], links: &[Link]) -> String {
     told.join("; ")
 }
 
-fn verdict(places: &[PartPlace], links: &[Link], parts: &[Part]) -> (MergeVerdict, String) {
+fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerdict, String) {
     let placed = places.iter().filter(|p| p.merged_from_part.is_some()).count();
     let names = || {
         let left: Vec<String> =
@@ -315,7 +131,7 @@ fn verdict(places: &[PartPlace], links: &[Link], parts: &[Part]) -> (MergeVerdic
         left.join(", ")
     };
     if placed == places.len() && placed > 1 {
-        let used: Vec<&Link> = links.iter().filter(|l| l.edge.used).collect();
+        let used: Vec<&Link> = network.links.iter().filter(|l| l.edge.used).collect();
         let inliers: usize = used.iter().map(|l| l.edge.inliers).sum();
         let photos: usize = used.iter().map(|l| l.edge.shared_photos.len()).sum();
         let reason =
@@ -328,12 +144,11 @@ fn verdict(places: &[PartPlace], links: &[Link], parts: &[Part]) -> (MergeVerdic
             format!("{placed} of {} parts are joined; left out: {}", places.len(), names()),
         );
     }
-    let in_cycle = |l: &&Link| l.edge.reason.as_ref().is_some_and(|r| r.starts_with(CYCLE_OPEN));
-    if let Some(reason) = links.iter().find(in_cycle).and_then(|l| l.edge.reason.clone()) {
-        return (MergeVerdict::Ambiguous, reason);
+    if let Some(reason) = &network.ambiguity {
+        return (MergeVerdict::Ambiguous, reason.clone());
     }
-    let open = links.iter().any(|l| matches!(l.opinion, Opinion::Open(_)));
-    let loose_anchor = parts.iter().any(|p| p.anchor.as_ref().is_some_and(|a| !a.determined));
+    let open = network.links.iter().any(|l| matches!(l.opinion, Opinion::Open(_)));
+    let loose_anchor = network.parts.iter().any(|p| p.anchor.as_ref().is_some_and(|a| !a.determined));
     if open || loose_anchor {
         return (MergeVerdict::Undetermined, format!("how the parts stand to each other is not fixed: {}", names()));
     }
@@ -341,7 +156,8 @@ fn verdict(places: &[PartPlace], links: &[Link], parts: &[Part]) -> (MergeVerdic
 }
 
 /// Edges for the report, lengths in the merged frame, and one for every pair that meets only through the city.
-fn edges(parts: &[Part], poses: &[Option<Similarity>], links: Vec<Link>) -> Vec<Edge> {
+fn edges(poses: &[Option<Similarity>], network: Network<'_>) -> Vec<Edge> {
+    let Network { parts, links, anchored: in_use, anchor_faults, .. } = network;
     let mut edges: Vec<Edge> = links
         .into_iter()
         .map(|link| {
@@ -351,7 +167,7 @@ fn edges(parts: &[Part], poses: &[Option<Similarity>], links: Vec<Link>) -> Vec<
         .collect();
     let anchored: Vec<usize> = (0..parts.len()).filter(|&p| parts[p].anchor.is_some()).collect();
     for pair in anchored.windows(2) {
-        let determined = pair.iter().all(|&p| parts[p].anchor.as_ref().is_some_and(|a| a.determined));
+        let fault = pair.iter().find_map(|&p| anchor_faults[p].clone());
         edges.push(Edge {
             a: pair[0],
             b: pair[1],
@@ -360,8 +176,11 @@ fn edges(parts: &[Part], poses: &[Option<Similarity>], links: Vec<Link>) -> Vec<
             pairs: 0,
             inliers: 0,
             rms: 0.0,
-            used: determined,
-            reason: (!determined).then(|| "the city does not fix both parts".to_owned()),
+            used: pair.iter().all(|&p| in_use[p]),
+            reason: match pair.iter().all(|&p| in_use[p]) {
+                true => None,
+                false => Some(fault.unwrap_or_else(|| "the city does not fix both parts".to_owned())),
+            },
         });
     }
     edges.iter_mut().for_each(|e| (e.a, e.b) = (e.a.min(e.b), e.a.max(e.b)));
@@ -372,10 +191,10 @@ fn edges(parts: &[Part], poses: &[Option<Similarity>], links: Vec<Link>) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Rotation3, Vector3};
+    use crate::geometry::{Point3, Rotation3, Vector3};
+    use crate::merging::Anchor;
     use crate::merging::fit::Fit;
     use crate::reconstruction::Reconstruction;
-    use crate::robust::Matrix7;
 
     /// A cloud of radius about one, the same in the world for all parts.
     fn part(k: usize) -> Part {
@@ -483,5 +302,68 @@ mod tests {
         assert_eq!(found.verdict, MergeVerdict::Partial);
         assert_placed(&found, &[2, 3, 4]);
         assert!(found.places[0].merged_from_part.is_none() && found.places[0].reason.is_some());
+    }
+
+    /// The part in the world's frame, `error` off, known to `sigma` in every unknown.
+    fn anchored(k: usize, error: &Similarity, sigma: f64) -> Part {
+        let anchor = Anchor {
+            common_from_part: *error * world_from_part(k),
+            determined: true,
+            chart: Chart { center: Point3::origin(), radius: 1.7 },
+            information: Matrix7::identity() / (sigma * sigma),
+            reason: "in the city aligned".into(),
+            freedoms: Vec::new(),
+            support: crate::verdict::Support::default(),
+        };
+        Part { anchor: Some(anchor), ..part(k) }
+    }
+
+    #[test]
+    fn anchors_weigh_by_what_the_city_knows_of_each() {
+        let parts = [anchored(0, &shifted(0.0), 0.01), anchored(1, &shifted(0.2), 0.1)];
+        let found = solve(&parts, &[1, 0], vec![link(0, 1, 100, &shifted(0.0))]);
+        assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
+        let x = Point3::new(0.2, -0.4, 0.7);
+        for (k, place) in found.places.iter().enumerate() {
+            let off = place.merged_from_part.unwrap().apply(&world_from_part(k).inverse().apply(&x)) - x;
+            // A hundred times the information against an anchor 0.2 off.
+            assert!((off.x - 0.2 / 101.0).abs() < 1e-3 && off.yz().norm() < 1e-3, "part {k} is {off} off");
+            assert_eq!(place.freedoms.len(), 7);
+        }
+    }
+
+    #[test]
+    fn an_anchor_that_the_edges_contradict_is_named_or_nothing_is_said() {
+        let links = |count: usize| -> Vec<Link> {
+            (0..count).flat_map(|b| (0..b).map(move |a| link(a, b, 100, &shifted(0.0)))).collect()
+        };
+        let off = |k: usize, wrong: usize| anchored(k, &shifted(if k == wrong { 0.9 } else { 0.0 }), 0.02);
+        let parts: Vec<Part> = (0..3).map(|k| off(k, 1)).collect();
+        let found = solve(&parts, &[2, 1, 0], links(3));
+        assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
+        let unused: Vec<&Edge> = found.edges.iter().filter(|e| !e.used).collect();
+        assert!(unused.iter().all(|e| e.reason.as_ref().unwrap().contains("part 1 and the city")), "{unused:?}");
+        let moved = found.places[1].merged_from_part.unwrap() * world_from_part(1).inverse();
+        assert!(moved.translation.norm() < 1e-3, "{moved:?}");
+
+        // One edge and two anchors: any of the three may be wrong.
+        let parts: Vec<Part> = (0..2).map(|k| off(k, 1)).collect();
+        let found = solve(&parts, &[1, 0], links(2));
+        assert_eq!(found.verdict, MergeVerdict::Ambiguous, "{}", found.reason);
+    }
+
+    #[test]
+    fn a_cycle_misses_by_what_its_edges_leave_open_without_blame() {
+        let ring = |information: f64| {
+            let ring = [(0, 1), (1, 2), (2, 3), (0, 3)];
+            let links = ring.map(|(a, b)| {
+                let mut link = link(a, b, 100, &shifted(if a == 1 { 0.2 } else { 0.0 }));
+                link.fit.as_mut().unwrap().information = Matrix7::identity() * information;
+                link
+            });
+            solved(4, links.into()).verdict
+        };
+        assert_eq!(ring(400.0), MergeVerdict::Merged, "0.2 is two of four edges' joint sigmas of 0.1 or more");
+        assert_eq!(ring(1e6), MergeVerdict::Ambiguous);
     }
 }

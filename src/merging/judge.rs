@@ -35,12 +35,13 @@ const MIRROR_FACTOR: f64 = 1.15;
 const MOST_STRETCH: f64 = 1.06;
 const STRETCH_GAIN: f64 = 0.6;
 /// One sigma, share of the radius, beyond which a freedom is not determined: 0.15 % of the extent.
-const DETERMINED: f64 = 0.003;
+pub(super) const DETERMINED: f64 = 0.003;
 
-pub(super) fn judge(evidence: &Evidence, fit: Option<&Fit>, seed: u64) -> Opinion {
+/// `names` are the two parts'.
+pub(super) fn judge(evidence: &Evidence, fit: Option<&Fit>, names: [&str; 2], seed: u64) -> Opinion {
     let pairs = evidence.pairs.len();
     let photos = evidence.photos.len();
-    if let Some(reason) = unsound(evidence) {
+    if let Some(reason) = unsound(evidence, names) {
         return Opinion::Apart(reason);
     }
     let needed = (CHANCE_FACTOR * evidence.chance).max(evidence.chance + CHANCE_SIGMAS * evidence.chance.sqrt());
@@ -71,15 +72,15 @@ pub(super) fn judge(evidence: &Evidence, fit: Option<&Fit>, seed: u64) -> Opinio
         .unwrap_or(Opinion::Together)
 }
 
-fn unsound(evidence: &Evidence) -> Option<String> {
+fn unsound(evidence: &Evidence, names: [&str; 2]) -> Option<String> {
     let (which, error) = if evidence.own_error[0] >= evidence.own_error[1] {
-        ("first", evidence.own_error[0])
+        (names[0], evidence.own_error[0])
     } else {
-        ("second", evidence.own_error[1])
+        (names[1], evidence.own_error[1])
     };
     (error > OWN_ERROR).then(|| {
         format!(
-            "the {which} part contradicts itself: its points miss its own keypoints by {:.1} % of the photograph's width",
+            "{which} contradicts itself: its points miss its own keypoints by {:.1} % of the photograph's width",
             100.0 * error
         )
     })

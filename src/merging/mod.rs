@@ -9,8 +9,11 @@
 //! Assumptions  a photograph of one name shows the same pixels in both parts, at whatever size
 //! Fails when   two parts share no photograph and no anchor, or their shared photographs have too few keypoints in common
 
+mod adjust;
+mod cycles;
 mod evidence;
 mod fit;
+mod freedoms;
 mod fuse;
 mod graph;
 mod judge;
@@ -25,6 +28,8 @@ pub use pairwise::{Edge, EdgeSource};
 use crate::geometry::Similarity;
 use crate::imagery::LiftedSuperpixels;
 use crate::reconstruction::Reconstruction;
+use crate::robust::{Chart, Matrix7};
+use crate::verdict::{Alignment, Freedom, Support, Verdict};
 
 /// One of the reconstructions to be joined.
 #[derive(Clone, Debug)]
@@ -43,8 +48,35 @@ pub struct Part {
 pub struct Anchor {
     pub common_from_part: Similarity,
     pub determined: bool,
+    /// Centre and radius that make the seven unknowns of `information` lengths, common frame.
+    pub chart: Chart,
+    /// Inverse of the alignment's covariance, in the chart's unknowns.
+    pub information: Matrix7,
     /// What the alignment said.
     pub reason: String,
+    pub freedoms: Vec<Freedom>,
+    pub support: Support,
+}
+
+impl Anchor {
+    /// Where an alignment puts a part, as it stands.
+    pub fn of(alignment: &Alignment, sfm: &Reconstruction, fallback: Similarity) -> Anchor {
+        let common_from_part = alignment.best.unwrap_or(fallback);
+        let radius = common_from_part.scale * sigma::extent(&sfm.points).1;
+        let chart = Chart { center: alignment.center, radius };
+        // The report's covariance is in radians, metres and log scale.
+        let lengths = Matrix7::from_diagonal(&[radius, radius, radius, 1.0, 1.0, 1.0, radius].into());
+        let covariance = Matrix7::from_fn(|i, j| alignment.covariance[i][j]);
+        Anchor {
+            common_from_part,
+            determined: alignment.best.is_some() && alignment.verdict == Verdict::Aligned,
+            chart,
+            information: (lengths * covariance * lengths).try_inverse().unwrap_or_else(Matrix7::zeros),
+            reason: format!("in the city {}: {}", alignment.verdict.word(), alignment.reason),
+            freedoms: alignment.freedoms.clone(),
+            support: alignment.support.clone(),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -90,8 +122,25 @@ pub struct PartPlace {
     pub best_candidate: Option<Similarity>,
     /// Why it is not placed.
     pub reason: Option<String>,
+    /// How firmly the ties hold it in the merged frame, the loosest first; of a part without a place what the city, or the one
+    /// edge that suggests its place, leaves open. Empty where nothing is known, and of the part that gives the frame.
+    pub freedoms: Vec<Freedom>,
+    pub support: PartSupport,
+}
+
+/// What a part brings, and what holds it.
+#[derive(Clone, Debug, Default)]
+pub struct PartSupport {
     pub images: usize,
     pub points: usize,
+    /// Edges in use.
+    pub edges: usize,
+    /// Photographs that these edges share, each once.
+    pub shared_photos: usize,
+    /// Point pairs that agree, over these edges.
+    pub inliers: usize,
+    /// How well it lies on the city, where one was given.
+    pub city: Option<Support>,
 }
 
 /// The outcome of a merge.

@@ -68,7 +68,7 @@ fn link(parts: &[Part], a: usize, b: usize, options: &MergeOptions) -> Option<Li
     let names = photos.iter().map(|p| p.name.clone()).collect();
     let evidence = gather(&parts[a], &parts[b], photos);
     let fit = fit(&evidence, options.seed);
-    let opinion = judge(&evidence, fit.as_ref(), options.seed);
+    let opinion = judge(&evidence, fit.as_ref(), [&parts[a].name, &parts[b].name], options.seed);
     let left_out = fit.iter().flat_map(|f| &f.cameras_used).filter(|used| !**used).count();
     let reason = match &opinion {
         Opinion::Together if left_out > 0 => Some(format!(

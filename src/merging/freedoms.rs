@@ -1,0 +1,57 @@
+//! The seven freedoms of a part in the merged frame, in words.
+
+use nalgebra::SymmetricEigen;
+
+use super::adjust::Held;
+use super::cycles::TIE_FLOOR;
+use super::judge::DETERMINED;
+use crate::geometry::Vector3;
+use crate::robust::Matrix7;
+use crate::verdict::{Freedom, Hold};
+
+/// In the city's frame: metres and directions by their names.
+pub(super) fn in_the_city(held: &Held) -> Vec<Freedom> {
+    crate::verdict::freedoms(&Hold {
+        chart: held.chart,
+        by_plane: vec![held.information],
+        start: Matrix7::zeros(),
+        scale_is_fixed: false,
+    })
+}
+
+/// In the frame of a part, which knows neither metres nor up; the loosest first. Sigmas hold what parts bend by, which no ties tell;
+/// whether a freedom is determined is for the ties to say.
+pub(super) fn in_a_parts_frame(held: &Held) -> Vec<Freedom> {
+    let radius = held.chart.radius;
+    let eigen = SymmetricEigen::new(held.information);
+    let mut order: Vec<usize> = (0..7).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    // What nothing holds is known as well as the size of the scene.
+    let own = |k: usize| if eigen.eigenvalues[k] > 0.0 { eigen.eigenvalues[k].sqrt().recip() } else { radius };
+    let sigma = |k: usize| own(k).hypot(TIE_FLOOR * radius);
+    let in_words = |k: usize| {
+        let unit = eigen.eigenvectors.column(k);
+        let part = |first: usize| Vector3::new(unit[first], unit[first + 1], unit[first + 2]);
+        let (turn, shift, scale) = (part(0), part(3), unit[6].abs());
+        let largest = turn.norm().max(shift.norm()).max(scale);
+        let (name, direction, sigma_in_unit, unit) = if scale == largest {
+            ("scale", Vector3::zeros(), sigma(k) / radius, "1")
+        } else if shift.norm() == largest {
+            ("shift", positive(&shift), sigma(k), FRAME_UNIT)
+        } else {
+            ("turn", positive(&turn), (sigma(k) / radius).to_degrees(), "deg")
+        };
+        let determined = own(k) <= DETERMINED * radius;
+        Freedom { name: name.to_owned(), direction, sigma: sigma_in_unit, unit, determined }
+    };
+    order.into_iter().map(in_words).collect()
+}
+
+/// Lengths in a frame that is not metric.
+const FRAME_UNIT: &str = "frame unit";
+
+/// The unit vector along `v` whose largest component is positive.
+fn positive(v: &Vector3<f64>) -> Vector3<f64> {
+    let unit = v.normalize();
+    if unit[unit.iamax()] < 0.0 { -unit } else { unit }
+}

@@ -1,0 +1,147 @@
+//! `cityweld merge` over several parts: neither the order of the arguments, nor the number of threads, nor the names of folders
+//! change anything but the frame. On pieces of the sample, and on the chain of `../shared/data/merge` where it is there.
+
+mod pieces;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use cityweld::export::colmap::write_colmap;
+use cityweld::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
+use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+use pieces::piece;
+use serde_json::Value;
+
+/// Rounding alone, as a share of the scene: sums are taken in another order.
+const ROUNDING: f64 = 1e-6;
+/// Keypoints of two points that lie within the tolerance of each other are taken for one, which pulls the places a little.
+const WRONG_PAIRS: f64 = 1e-3;
+
+/// Every part in a gauge of its own.
+fn gauge(k: usize) -> Similarity {
+    let t = k as f64;
+    Similarity {
+        scale: 1.0 + 0.7 * t,
+        rotation: Rotation3::from_euler_angles(0.4 * t, -0.9 * t, 1.7 * t),
+        translation: Vector3::new(5.0 * t, -3.0 * t, t),
+    }
+}
+
+/// Three parts of which every two share photographs.
+fn write_sample_parts(room: &Path, names: [&str; 3]) -> Vec<PathBuf> {
+    let whole = read_reconstruction(&Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample/sfm")).unwrap();
+    let views = [0..11, 6..18, 9..24];
+    let parts = views.into_iter().enumerate().map(|(k, views)| piece(&whole, views, &gauge(k)));
+    parts.zip(names).map(|(part, name)| write_part(room, name, &part)).collect()
+}
+
+fn write_part(room: &Path, name: &str, part: &Reconstruction) -> PathBuf {
+    let folder = room.join(name);
+    write_colmap(&folder, part).unwrap();
+    folder
+}
+
+fn chain(room: &Path, names: [&str; 3]) -> Option<Vec<PathBuf>> {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/merge/castle-chain");
+    if !scene.is_dir() {
+        println!("skipped: {} is not there", scene.display());
+        return None;
+    }
+    let read = |part: &str| read_reconstruction(&scene.join(part)).unwrap();
+    let parts = ["part_a", "part_b", "part_c"].into_iter().zip(names);
+    Some(parts.map(|(part, name)| write_part(room, name, &read(part))).collect())
+}
+
+/// The files of a merge, by name.
+fn merged(parts: &[&PathBuf], out: &Path, threads: &str) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cityweld"));
+    let ended = command.arg("merge").args(parts).arg("-o").arg(out).args(["--quiet", "--threads", threads]).output();
+    let ended = ended.unwrap();
+    assert_eq!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stdout));
+    let files = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        entries.filter(|path| path.is_file()).collect::<Vec<_>>()
+    };
+    let mut all: Vec<PathBuf> = files(out).into_iter().chain(files(&out.join("sfm"))).collect();
+    all.sort();
+    all.into_iter().map(|path| (path.strip_prefix(out).unwrap().into(), std::fs::read(&path).unwrap())).collect()
+}
+
+fn report(files: &[(PathBuf, Vec<u8>)]) -> Value {
+    let (_, text) = files.iter().find(|(path, _)| path.ends_with("merge.json")).unwrap();
+    serde_json::from_slice(text).unwrap()
+}
+
+fn pose(part: &Value) -> Similarity {
+    let number = |v: &Value| v.as_f64().unwrap();
+    let transform = &part["transform"];
+    let rotation = Matrix3::from_fn(|i, j| number(&transform["rotation"][i][j]));
+    let translation = Vector3::from_fn(|i, _| number(&transform["translation"][i]));
+    Similarity::try_new(number(&transform["scale"]), rotation, translation).unwrap()
+}
+
+/// The place of every part as seen from the part `names[0]`.
+fn places(report: &Value, names: [&str; 3]) -> [Similarity; 3] {
+    let of = |name: &str| pose(report["parts"].as_array().unwrap().iter().find(|p| p["name"] == name).unwrap());
+    names.map(|name| of(names[0]).inverse() * of(name))
+}
+
+fn assert_same_places(one: [Similarity; 3], other: [Similarity; 3], tolerance: f64) {
+    for (one, other) in one.iter().zip(&other) {
+        for x in [[0.0; 3], [10.0, 0.0, 0.0], [0.0, 10.0, -10.0]].map(Point3::from) {
+            let (p, q) = (one.apply(&x), other.apply(&x));
+            assert!((p - q).norm() < tolerance * (1.0 + p.coords.norm()), "{p} {q}");
+        }
+    }
+}
+
+fn assert_only_the_frame_changes(write: impl Fn(&Path, [&'static str; 3]) -> Option<Vec<PathBuf>>) {
+    let room = tempfile::tempdir().unwrap();
+    let names = ["first", "second", "third"];
+    let Some(parts) = write(&room.path().join("one"), names) else { return };
+    let [a, b, c] = [&parts[0], &parts[1], &parts[2]];
+    let before = merged(&[a, b, c], &room.path().join("before"), "1");
+    let told = report(&before);
+
+    assert!(before == merged(&[a, b, c], &room.path().join("threads"), "3"), "the number of threads changes the files");
+
+    for (k, order) in [[a, c, b], [c, b, a], [b, a, c]].into_iter().enumerate() {
+        let again = report(&merged(&order, &room.path().join(format!("order{k}")), "2"));
+        assert_eq!(told["ledger"], again["ledger"]);
+        assert_eq!(again["parts"][0]["transform"]["scale"], 1.0, "the first part gives the frame");
+        assert_same_places(places(&told, names), places(&again, names), ROUNDING);
+    }
+
+    // Other names, which sort the other way round.
+    let other_names = ["zz", "m m", "a"];
+    let renamed = write(&room.path().join("other"), other_names).unwrap();
+    let again = merged(&renamed.iter().collect::<Vec<_>>(), &room.path().join("renamed"), "2");
+    for ((path, one), (_, other)) in before.iter().zip(&again) {
+        if !path.ends_with("merge.json") {
+            assert!(one == other, "names of folders change {}", path.display());
+        }
+    }
+    for (one, other) in told["parts"].as_array().unwrap().iter().zip(report(&again)["parts"].as_array().unwrap()) {
+        assert_eq!(one["transform"], other["transform"]);
+    }
+}
+
+#[test]
+fn order_threads_and_names_change_nothing_but_the_frame() {
+    assert_only_the_frame_changes(|room, names| Some(write_sample_parts(room, names)));
+}
+
+#[test]
+fn order_threads_and_names_change_nothing_but_the_frame_of_a_real_chain() {
+    assert_only_the_frame_changes(chain);
+}
+
+#[test]
+fn pieces_of_one_reconstruction_come_together_as_they_were() {
+    let room = tempfile::tempdir().unwrap();
+    let names = ["first", "second", "third"];
+    let parts = write_sample_parts(room.path(), names);
+    let told = report(&merged(&parts.iter().collect::<Vec<_>>(), &room.path().join("out"), "2"));
+    assert_same_places(places(&told, names), [0, 1, 2].map(|k| gauge(0) * gauge(k).inverse()), WRONG_PAIRS);
+    assert_eq!(told["ledger"]["images"]["kept"], 24);
+}

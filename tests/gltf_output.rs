@@ -64,8 +64,11 @@ fn the_scene_of_the_sample_is_valid() {
     let room = tempfile::tempdir().unwrap();
     let path = room.path().join("scene.glb");
     let write = |reconstruction: &Reconstruction| {
-        let placed = Some(Placed { reconstruction, city_from_sfm });
-        write_scene(&path, &Scene { title: "best candidate, NOT aligned: \"quoted\" \u{2713}", city: &city, placed })
+        let placed = Some(Placed { reconstruction, point_colors: &reconstruction.colors, city_from_sfm });
+        write_scene(
+            &path,
+            &Scene { title: "best candidate, NOT aligned: \"quoted\" \u{2713}", city: Some(&city), placed },
+        )
     };
     write(&reconstruction).unwrap();
     assert_valid(&path);
@@ -83,7 +86,7 @@ fn scenes_with_little_in_them_are_valid() {
     let room = tempfile::tempdir().unwrap();
     let path = room.path().join("scene.glb");
     for city in [sample_city(), CityModel::default()] {
-        write_scene(&path, &Scene { title: "city alone", city: &city, placed: None }).unwrap();
+        write_scene(&path, &Scene { title: "city alone", city: Some(&city), placed: None }).unwrap();
         assert_valid(&path);
     }
 }

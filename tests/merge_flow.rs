@@ -14,7 +14,7 @@ use cityweld::reconstruction::{
     CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, read_reconstruction,
 };
 use cityweld::robust::{Chart, Matrix7};
-use cityweld::verdict::{Freedom, Support};
+use cityweld::verdict::{Freedom, Support, Verdict};
 use json_schema::keeps;
 use serde_json::Value;
 
@@ -225,11 +225,17 @@ fn one_part_given_twice_is_the_identity() {
 }
 
 /// The part in the world's frame, as a city would hold it.
-fn anchor(world_from_part: Similarity, determined: bool) -> Anchor {
-    let along_up = Freedom { name: "along up".into(), direction: Vector3::z(), sigma: 3.0, unit: "m", determined };
+fn anchor(world_from_part: Similarity, verdict: Verdict) -> Anchor {
+    let along_up = Freedom {
+        name: "along up".into(),
+        direction: Vector3::z(),
+        sigma: 3.0,
+        unit: "m",
+        determined: verdict == Verdict::Aligned,
+    };
     Anchor {
         common_from_part: world_from_part,
-        determined,
+        verdict,
         chart: Chart { center: Point3::new(0.0, 0.0, 10.0), radius: 5.0 },
         information: Matrix7::identity() * 400.0,
         reason: "in the city undetermined: along up".into(),
@@ -243,30 +249,30 @@ fn every_kind_of_report_keeps_to_the_published_schema() {
     let schema: Value = serde_json::from_str(include_str!("../assets/merge.schema.json")).unwrap();
     let [first, second] = two_parts();
     let stranger = given("stranger", part(0..3, &second_from_world(), |view| format!("elsewhere/{view}.jpg")));
-    let anchored = |part: &Part, determined| Part {
-        anchor: Some(anchor(
-            if part.name == "first" { Similarity::identity() } else { second_from_world().inverse() },
-            determined,
-        )),
-        ..part.clone()
+    let anchored = |part: &Part, verdict| {
+        let world_from_part =
+            if part.name == "second" { second_from_world().inverse() } else { Similarity::identity() };
+        Part { anchor: Some(anchor(world_from_part, verdict)), ..part.clone() }
     };
+    use Verdict::{Aligned, Ambiguous, Failed, Undetermined};
     for (parts, verdict) in [
         (vec![first.clone(), second.clone()], "merged"),
         (vec![first.clone(), second.clone(), stranger.clone()], "partial"),
         (vec![first.clone(), stranger.clone()], "failed"),
-        (vec![anchored(&first, true), anchored(&second, true)], "merged"),
-        (
-            vec![anchored(&first, false), Part { anchor: Some(anchor(Similarity::identity(), false)), ..stranger }],
-            "undetermined",
-        ),
+        (vec![anchored(&first, Aligned), anchored(&second, Aligned)], "merged"),
+        (vec![anchored(&first, Aligned), anchored(&stranger, Aligned)], "merged"),
+        (vec![anchored(&first, Aligned), anchored(&stranger, Undetermined)], "undetermined"),
+        (vec![anchored(&first, Aligned), anchored(&stranger, Ambiguous)], "ambiguous"),
+        (vec![anchored(&first, Failed), anchored(&stranger, Failed)], "failed"),
     ] {
         let found = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
         let report: Value = serde_json::from_str(&merge_report(&found).unwrap()).unwrap();
         assert_eq!(report["verdict"], verdict, "{report:#}");
         assert!(keeps(&report, &schema, &schema), "{report:#}");
-        // Every key of a part is one that the schema names, and a place comes with what holds it.
-        let broken = Value::from_iter([("schema", "cityweld.merge/1")]);
-        assert!(!keeps(&broken, &schema, &schema));
+        let mut broken = report.clone();
+        broken["parts"][0]["placed"] = Value::from("yes");
+        assert!(!keeps(&broken, &schema, &schema), "the schema refuses what is none");
+        // A place comes with what holds it; the part that gives the frame is held by nothing.
         let placed = report["parts"].as_array().unwrap().iter().filter(|p| p["placed"] == true);
         let free = placed.filter(|p| p["freedoms"].as_array().unwrap().len() == 7).count();
         let in_city = report["frame"] == "the city's";

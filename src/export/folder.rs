@@ -48,7 +48,7 @@ pub fn write_alignment(
     match alignment.best {
         Some(best) => files.extend(write_placed(folder, &title, city, reconstruction, &best, Formats::ALL)?),
         None => {
-            write_scene(&folder.join(SCENE_FILE), &Scene { title: &title, city, placed: None })?;
+            write_scene(&folder.join(SCENE_FILE), &Scene { title: &title, city: Some(city), placed: None })?;
             files.push(SCENE_FILE);
         }
     }
@@ -68,7 +68,7 @@ pub fn write_placed(
     if formats.glb {
         let placed =
             Some(Placed { reconstruction, point_colors: &reconstruction.colors, city_from_sfm: *city_from_sfm });
-        write_scene(&folder.join(SCENE_FILE), &Scene { title, city, placed })?;
+        write_scene(&folder.join(SCENE_FILE), &Scene { title, city: Some(city), placed })?;
         files.push(SCENE_FILE);
     }
     let colmap = formats.colmap && !reconstruction.images.is_empty();

@@ -26,7 +26,7 @@ const CITY_TRIANGLES: usize = 500_000;
 const CITY_MARGIN_M: f64 = 300.0;
 /// Of a larger cloud every n-th point is written; `points.ply` has all.
 const POINTS: usize = 10_000_000;
-/// Length of a camera's frustum as a share of the scene's diagonal, and its limits in metres.
+/// Length of a camera's frustum as a share of the scene's diagonal, and its limits in metres, where there are metres.
 const FRUSTUM_SHARE: f64 = 1.0 / 60.0;
 const FRUSTUM_LIMITS_M: (f64, f64) = (0.3, 8.0);
 /// Share of the points left out at each end of an axis when the extent of the scene is taken: outliers lie far away.
@@ -42,7 +42,8 @@ const POINT_COLOR: [u8; 3] = [230, 110, 20];
 pub struct Scene<'a> {
     /// Name of the root node: a viewer shows it first, so it says whether the pose is to be relied on.
     pub title: &'a str,
-    pub city: &'a CityModel,
+    /// `None` where the scene stands in the frame of a reconstruction, which knows neither metres nor up.
+    pub city: Option<&'a CityModel>,
     /// `None` where no pose was found: the scene shows the city alone.
     pub placed: Option<Placed<'a>>,
 }
@@ -60,21 +61,26 @@ pub struct Placed<'a> {
 /// Writes a scene as GLB.
 pub fn write_scene(path: &Path, scene: &Scene<'_>) -> Result<(), ExportError> {
     let mut glb = Glb::default();
+    let nothing = CityModel::default();
+    let city = scene.city.unwrap_or(&nothing);
     // The frame of all that follows: relative to the city's origin, z up.
-    let placed = scene.placed.map(|p| Placed { city_from_sfm: p.city_from_sfm.relative_to(&scene.city.origin), ..p });
+    let placed = scene.placed.map(|p| Placed { city_from_sfm: p.city_from_sfm.relative_to(&city.origin), ..p });
     let extent = placed.as_ref().and_then(Extent::of_points);
-    let (city, written) = city_node(&mut glb, scene.city, extent.as_ref());
-    let mut children = Vec::from_iter(city);
+    let (city_node, written) = city_node(&mut glb, city, extent.as_ref());
+    let mut children = Vec::from_iter(city_node);
     if let (Some(placed), Some(extent)) = (&placed, &extent) {
         children.extend(points_node(&mut glb, placed));
-        children.extend(cameras_node(&mut glb, placed, extent));
+        children.extend(cameras_node(&mut glb, placed, frustum_depth(extent, scene.city.is_some())));
     }
     let children = (!children.is_empty()).then_some(children);
     let root = glb.node(scene.title, Node { children, ..Default::default() });
     let extras = json!({
-        "origin": scene.city.origin.as_slice(),
-        "frame": "x = city x, y = city z (up), z = -city y, metres, relative to origin (city frame: x, y, z)",
-        "city_triangles": { "in_model": scene.city.triangles.len(), "written": written },
+        "origin": city.origin.as_slice(),
+        "frame": match scene.city {
+            Some(_) => "x = city x, y = city z (up), z = -city y, metres, relative to origin (city frame: x, y, z)",
+            None => "x = x, y = z, z = -y of the reconstruction's own frame and unit; its up is not known",
+        },
+        "city_triangles": { "in_model": city.triangles.len(), "written": written },
     });
     write_glb(path, glb, root, &extras)
 }
@@ -205,12 +211,11 @@ fn points_node(glb: &mut Glb, placed: &Placed<'_>) -> Option<Index<Node>> {
 }
 
 /// One node a photograph, named as it is, so that a viewer tells which one a frustum belongs to.
-fn cameras_node(glb: &mut Glb, placed: &Placed<'_>, extent: &Extent) -> Option<Index<Node>> {
+fn cameras_node(glb: &mut Glb, placed: &Placed<'_>, depth: f64) -> Option<Index<Node>> {
     if placed.reconstruction.images.is_empty() {
         return None;
     }
     let material = glb.material("cameras", CAMERA_COLOR, false);
-    let depth = (FRUSTUM_SHARE * extent.diagonal()).clamp(FRUSTUM_LIMITS_M.0, FRUSTUM_LIMITS_M.1);
     let mesh = frustum_mesh(glb, depth, material)?;
     let mut children = Vec::new();
     for image in &placed.reconstruction.images {
@@ -227,6 +232,11 @@ fn cameras_node(glb: &mut Glb, placed: &Placed<'_>, extent: &Extent) -> Option<I
         }
     }
     (!children.is_empty()).then(|| glb.node("cameras", Node { children: Some(children), ..Default::default() }))
+}
+
+fn frustum_depth(extent: &Extent, is_metric: bool) -> f64 {
+    let depth = FRUSTUM_SHARE * extent.diagonal();
+    if is_metric { depth.clamp(FRUSTUM_LIMITS_M.0, FRUSTUM_LIMITS_M.1) } else { depth }
 }
 
 /// A small pyramid in the camera frame (x right, y down, z forward) with a notch on its upper side.
@@ -360,7 +370,7 @@ mod tests {
             point_colors: &reconstruction.colors,
             city_from_sfm: shift,
         });
-        let (gltf, _) = written(&Scene { title: "t", city: &city, placed });
+        let (gltf, _) = written(&Scene { title: "t", city: Some(&city), placed });
         assert_eq!(positions(&gltf, "points"), [[1.0, 3.0, -2.0]]);
         assert_eq!(positions(&gltf, "ground")[2], [9.0, 1.0, -9.0]);
         let camera = gltf.nodes().find(|n| n.name() == Some("a/b.jpg")).unwrap();
@@ -374,7 +384,7 @@ mod tests {
     #[test]
     fn keeps_the_origin_in_full_precision() {
         let city = city();
-        let (gltf, bytes) = written(&Scene { title: "t", city: &city, placed: None });
+        let (gltf, bytes) = written(&Scene { title: "t", city: Some(&city), placed: None });
         let extras = gltf.as_json().asset.extras.as_ref().unwrap();
         let extras: serde_json::Value = serde_json::from_str(extras.get()).unwrap();
         assert_eq!(extras["origin"][0].as_f64(), Some(city.origin.x));
@@ -383,7 +393,7 @@ mod tests {
 
     #[test]
     fn shows_both_sides_only_of_open_surfaces() {
-        let (gltf, _) = written(&Scene { title: "t", city: &city(), placed: None });
+        let (gltf, _) = written(&Scene { title: "t", city: Some(&city()), placed: None });
         let double_sided = |name: &str| {
             let mesh = gltf.meshes().find(|m| m.name() == Some(name)).unwrap();
             mesh.primitives().next().unwrap().material().double_sided()
@@ -407,7 +417,7 @@ mod tests {
 
     #[test]
     fn writes_a_scene_without_anything_in_it() {
-        let (gltf, _) = written(&Scene { title: "nothing", city: &CityModel::default(), placed: None });
+        let (gltf, _) = written(&Scene { title: "nothing", city: None, placed: None });
         assert_eq!(gltf.scenes().next().unwrap().nodes().next().unwrap().name(), Some("nothing"));
         assert!(gltf.blob.is_none());
     }

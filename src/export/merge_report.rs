@@ -35,8 +35,8 @@ const PART_COLORS: [[u8; 3]; 8] = [
     [153, 153, 153],
 ];
 
-/// Writes everything that a merge is told by into an existing folder; returns the names of what it wrote. `city` is the one
-/// whose frame the model stands in, if any.
+/// Writes everything that a merge is told by into an existing folder; returns the names of what it wrote. `city` is shown
+/// where the model stands in its frame.
 pub fn write_merge(folder: &Path, merge: &Merge, city: Option<&CityModel>) -> Result<Vec<&'static str>, ExportError> {
     let report = merge_report(merge)?;
     write_file(&folder.join(MERGE_REPORT_FILE), |out| out.write_all(report.as_bytes()))?;
@@ -44,8 +44,7 @@ pub fn write_merge(folder: &Path, merge: &Merge, city: Option<&CityModel>) -> Re
     let Some(model) = &merge.model else { return Ok(files) };
     let colors: Vec<[u8; 3]> =
         model.part_of_point.iter().map(|p| PART_COLORS[*p as usize % PART_COLORS.len()]).collect();
-    let nothing = CityModel::default();
-    let city = city.unwrap_or(&nothing);
+    let city = city.filter(|_| merge.in_city);
     let placed =
         Some(Placed { reconstruction: &model.sfm, point_colors: &colors, city_from_sfm: Similarity::identity() });
     let title = format!("{}: {}", merge.verdict.word(), merge.reason);

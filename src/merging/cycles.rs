@@ -7,9 +7,9 @@
 //!              of the cycle leave open together. A cycle that does not close has a wrong tie in it, and only the other cycles
 //!              say which one
 
-use super::Part;
 use super::pairwise::Link;
 use super::sigma::extent;
+use super::{Anchor, Part};
 use crate::geometry::{Point3, Similarity};
 use crate::robust::{Chart, Matrix7, Vector7};
 
@@ -71,7 +71,7 @@ struct Miss {
 
 impl<'a> Network<'a> {
     pub fn new(parts: &'a [Part], order: &'a [usize], links: Vec<Link>) -> Network<'a> {
-        let anchored = parts.iter().map(|p| p.anchor.as_ref().is_some_and(|a| a.determined)).collect();
+        let anchored = parts.iter().map(|p| p.anchor.as_ref().is_some_and(Anchor::is_determined)).collect();
         Network { parts, order, links, anchored, anchor_faults: vec![None; parts.len()], ambiguity: None }
     }
 
@@ -94,10 +94,9 @@ impl<'a> Network<'a> {
             }
         }
         let (tree, group) = self.tree(without);
-        if found.poses.iter().all(Option::is_none) {
-            if let Some(root) = self.root(&group) {
-                found.poses[root] = Some(Similarity::identity());
-            }
+        let has_frame = found.poses.iter().any(Option::is_some);
+        if let Some(root) = self.root(&group).filter(|_| !has_frame) {
+            found.poses[root] = Some(Similarity::identity());
         }
         // Each sweep reaches at least one further part.
         for _ in 0..count {
@@ -328,7 +327,8 @@ impl<'a> Network<'a> {
         for link in self.links.iter_mut().filter(|l| l.edge.used) {
             if poses[link.edge.a].is_none() || poses[link.edge.b].is_none() {
                 link.edge.used = false;
-                link.edge.reason = Some("its parts belong to another group than the one that was placed".into());
+                let elsewhere = || "its parts belong to another group than the one that was placed".to_owned();
+                link.edge.reason = Some(self.ambiguity.clone().unwrap_or_else(elsewhere));
             }
         }
         (0..poses.len()).for_each(|p| self.anchored[p] &= poses[p].is_some());

@@ -7,12 +7,13 @@ use super::pairwise::{Edge, EdgeSource, Link};
 use super::{MergeVerdict, Part, PartPlace, PartSupport, freedoms};
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Matrix7};
-use crate::verdict::Freedom;
+use crate::verdict::{Freedom, Verdict};
 
 pub(super) struct Solved {
     pub verdict: MergeVerdict,
     pub reason: String,
     pub frame: String,
+    pub in_city: bool,
     pub places: Vec<PartPlace>,
     pub edges: Vec<Edge>,
 }
@@ -33,7 +34,7 @@ pub(super) fn solve(parts: &[Part], order: &[usize], links: Vec<Link>) -> Solved
         name: parts[p].name.clone(),
         merged_from_part: poses[p],
         best_candidate: candidates[p],
-        reason: poses[p].is_none().then(|| why_not(p, parts, &network.links)),
+        reason: poses[p].is_none().then(|| why_not(p, &network)),
         freedoms: match (&held[p], poses[p]) {
             (Some(held), _) if in_city => freedoms::in_the_city(held),
             (Some(held), _) => freedoms::in_a_parts_frame(held),
@@ -44,7 +45,7 @@ pub(super) fn solve(parts: &[Part], order: &[usize], links: Vec<Link>) -> Solved
     };
     let places: Vec<PartPlace> = (0..parts.len()).map(place).collect();
     let (verdict, reason) = verdict(&places, &network);
-    Solved { verdict, reason, frame, places, edges: edges(&poses, network) }
+    Solved { verdict, reason, frame, in_city, places, edges: edges(&poses, network) }
 }
 
 fn support(part: usize, parts: &[Part], links: &[Link]) -> PartSupport {
@@ -106,8 +107,12 @@ fn candidates(parts: &[Part], poses: &[Option<Similarity>], links: &[Link]) -> V
     found
 }
 
-fn why_not(part: usize, parts: &[Part], links: &[Link]) -> String {
-    if let Some(anchor) = parts[part].anchor.as_ref().filter(|a| !a.determined) {
+fn why_not(part: usize, network: &Network<'_>) -> String {
+    let Network { parts, links, anchor_faults, .. } = network;
+    if let Some(fault) = &anchor_faults[part] {
+        return fault.clone();
+    }
+    if let Some(anchor) = parts[part].anchor.as_ref().filter(|a| !a.is_determined()) {
         return anchor.reason.clone();
     }
     let own: Vec<&Link> = links.iter().filter(|l| l.edge.a == part || l.edge.b == part).collect();
@@ -134,8 +139,17 @@ fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerdict, String
         let used: Vec<&Link> = network.links.iter().filter(|l| l.edge.used).collect();
         let inliers: usize = used.iter().map(|l| l.edge.inliers).sum();
         let photos: usize = used.iter().map(|l| l.edge.shared_photos.len()).sum();
-        let reason =
-            format!("{placed} parts are joined over {photos} shared photographs and {inliers} agreeing point pairs");
+        let in_city = network.anchored.iter().filter(|used| **used).count();
+        let reason = match (used.is_empty(), in_city) {
+            (true, _) => format!("each of {placed} parts stands in the city by itself"),
+            (false, 0) => {
+                format!("{placed} parts are joined over {photos} shared photographs and {inliers} agreeing point pairs")
+            }
+            (false, anchors) => format!(
+                "{placed} parts are joined over {photos} shared photographs and {inliers} agreeing point pairs, and {anchors} \
+                 stand in the city by themselves"
+            ),
+        };
         return (MergeVerdict::Merged, reason);
     }
     if placed > 1 {
@@ -147,9 +161,12 @@ fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerdict, String
     if let Some(reason) = &network.ambiguity {
         return (MergeVerdict::Ambiguous, reason.clone());
     }
+    let in_city = |verdict| network.parts.iter().any(|p| p.anchor.as_ref().is_some_and(|a| a.verdict == verdict));
+    if in_city(Verdict::Ambiguous) {
+        return (MergeVerdict::Ambiguous, format!("parts stand in the city in more than one way: {}", names()));
+    }
     let open = network.links.iter().any(|l| matches!(l.opinion, Opinion::Open(_)));
-    let loose_anchor = network.parts.iter().any(|p| p.anchor.as_ref().is_some_and(|a| !a.determined));
-    if open || loose_anchor {
+    if open || in_city(Verdict::Undetermined) {
         return (MergeVerdict::Undetermined, format!("how the parts stand to each other is not fixed: {}", names()));
     }
     (MergeVerdict::Failed, format!("nothing joins any two parts: {}", names()))
@@ -308,7 +325,7 @@ mod tests {
     fn anchored(k: usize, error: &Similarity, sigma: f64) -> Part {
         let anchor = Anchor {
             common_from_part: *error * world_from_part(k),
-            determined: true,
+            verdict: Verdict::Aligned,
             chart: Chart { center: Point3::origin(), radius: 1.7 },
             information: Matrix7::identity() / (sigma * sigma),
             reason: "in the city aligned".into(),
@@ -345,6 +362,12 @@ mod tests {
         assert!(unused.iter().all(|e| e.reason.as_ref().unwrap().contains("part 1 and the city")), "{unused:?}");
         let moved = found.places[1].merged_from_part.unwrap() * world_from_part(1).inverse();
         assert!(moved.translation.norm() < 1e-3, "{moved:?}");
+
+        // Two anchors that contradict each other, and edges that all agree: no place, and the reason says so.
+        let parts: Vec<Part> = (0..3).map(|k| if k == 2 { part(k) } else { off(k, 1) }).collect();
+        let found = solve(&parts, &[2, 1, 0], links(3));
+        assert_eq!(found.verdict, MergeVerdict::Ambiguous, "{}", found.reason);
+        assert!(found.places.iter().all(|p| p.reason.as_ref().unwrap().contains("a cycle does not close")));
 
         // One edge and two anchors: any of the three may be wrong.
         let parts: Vec<Part> = (0..2).map(|k| off(k, 1)).collect();

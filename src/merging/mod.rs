@@ -39,7 +39,7 @@ pub struct Part {
     pub sfm: Reconstruction,
     /// Of its photographs, where labels or photographs were given.
     pub superpixels: Option<LiftedSuperpixels>,
-    /// Where the part stands in a common frame already (a city's), and whether that is to be relied on.
+    /// Where the part stands in a common frame already (a city's), and how far that is to be relied on.
     pub anchor: Option<Anchor>,
 }
 
@@ -47,7 +47,8 @@ pub struct Part {
 #[derive(Clone, Debug)]
 pub struct Anchor {
     pub common_from_part: Similarity,
-    pub determined: bool,
+    /// Of the alignment: only where it says so is the place relied on.
+    pub verdict: Verdict,
     /// Centre and radius that make the seven unknowns of `information` lengths, common frame.
     pub chart: Chart,
     /// Inverse of the alignment's covariance, in the chart's unknowns.
@@ -59,7 +60,11 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Where an alignment puts a part, as it stands.
+    pub fn is_determined(&self) -> bool {
+        self.verdict == Verdict::Aligned
+    }
+
+    /// Where an alignment puts a part; `fallback` where it found nothing.
     pub fn of(alignment: &Alignment, sfm: &Reconstruction, fallback: Similarity) -> Anchor {
         let common_from_part = alignment.best.unwrap_or(fallback);
         let radius = common_from_part.scale * sigma::extent(&sfm.points).1;
@@ -69,7 +74,7 @@ impl Anchor {
         let covariance = Matrix7::from_fn(|i, j| alignment.covariance[i][j]);
         Anchor {
             common_from_part,
-            determined: alignment.best.is_some() && alignment.verdict == Verdict::Aligned,
+            verdict: alignment.verdict,
             chart,
             information: (lengths * covariance * lengths).try_inverse().unwrap_or_else(Matrix7::zeros),
             reason: format!("in the city {}: {}", alignment.verdict.word(), alignment.reason),
@@ -150,6 +155,8 @@ pub struct Merge {
     /// One sentence with figures.
     pub reason: String,
     pub frame: String,
+    /// True where that is the city's.
+    pub in_city: bool,
     /// In the order in which the parts were given.
     pub parts: Vec<PartPlace>,
     pub edges: Vec<Edge>,
@@ -192,6 +199,7 @@ pub fn merge(parts: &[Part], options: &MergeOptions, progress: &dyn Fn(&str)) ->
         verdict: solved.verdict,
         reason: solved.reason,
         frame: solved.frame,
+        in_city: solved.in_city,
         parts: solved.places,
         edges: solved.edges,
         ledger,

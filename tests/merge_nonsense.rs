@@ -113,5 +113,9 @@ fn a_part_given_again_in_another_frame_is_the_identity() {
     for (status, report) in merged(&[&scene.join("part_a"), &scene.join("part_b")]) {
         assert_eq!(status, Some(0), "{}", report["reason"]);
         assert_eq!(report["ledger"]["images"]["fused"], report["ledger"]["images"]["kept"]);
+        // Detectors give one spot a keypoint for each of its orientations; where both parts have all of them, none is lost.
+        let observations = &report["ledger"]["observations"];
+        let lost: u64 = observations["dropped"].as_object().unwrap().values().map(|v| v.as_u64().unwrap()).sum();
+        assert!(200 * lost < observations["in"].as_u64().unwrap(), "{observations}");
     }
 }

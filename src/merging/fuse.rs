@@ -1,5 +1,6 @@
 //! Several placed parts become one model: cameras, photographs, points and tracks, each once.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Matrix3;
@@ -311,7 +312,7 @@ fn build(
     mut photos: Vec<Photo>,
     ledger: &mut Ledger,
 ) -> (Reconstruction, Vec<usize>) {
-    unlink_seconds(&mut photos, sets, ledger);
+    unlink_seconds(moved, &mut photos, sets, ledger);
     let (roots, number_of) = surviving(moved, &photos, sets, ledger);
     let points: Vec<Point3<f64>> = roots.iter().map(|r| sets.position(*r)).collect();
     let images: Vec<Image> =
@@ -337,13 +338,25 @@ fn build(
     (sfm, parts)
 }
 
-/// A point is seen once in a photograph: its first keypoint stays.
-fn unlink_seconds(photos: &mut [Photo], sets: &PointSets<'_>, ledger: &mut Ledger) {
+/// A point is seen once in a photograph: its first keypoint stays. Another one at the same pixel is the same observation again.
+fn unlink_seconds(moved: &[Moved<'_>], photos: &mut [Photo], sets: &PointSets<'_>, ledger: &mut Ledger) {
     for photo in photos.iter_mut().filter(|p| p.is_fused) {
-        let mut seen = BTreeSet::new();
-        for (_, _, key) in &mut photo.keypoints {
-            if key.is_some_and(|k| !seen.insert(sets.root(k))) {
-                *key = None;
+        let same = SharedPhoto { name: String::new(), in_a: photo.image, in_b: photo.image };
+        let tolerance = tolerance_px(moved[photo.part].given, &same);
+        let mut first: BTreeMap<u32, (f64, f64)> = BTreeMap::new();
+        for (x_px, y_px, key) in &mut photo.keypoints {
+            let Some(root) = key.map(|k| sets.root(k)) else { continue };
+            let (x, y) = match first.entry(root) {
+                Entry::Vacant(place) => {
+                    place.insert((*x_px, *y_px));
+                    continue;
+                }
+                Entry::Occupied(place) => *place.get(),
+            };
+            *key = None;
+            if (*x_px - x).hypot(*y_px - y) <= tolerance {
+                ledger.observations.fused += 1;
+            } else {
                 ledger.observations.drop(SECOND, 1);
             }
         }

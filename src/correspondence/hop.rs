@@ -97,7 +97,7 @@ mod tests {
         let city = city();
         let start = Start::with_default_sigmas(Similarity::identity());
         let start = Start { city_from_sfm: start.city_from_sfm.relative_to(&city.origin), ..start };
-        let upright = Upright { up: Vector3::z(), sigma_rad: 0.0 };
+        let upright = Upright { up: Vector3::z(), sigma_rad: 0.0, known: true };
         let patches = patches(&seen(), None, &PatchOptions::default());
         let scene = Scene::new(&city, &patches, &start, &upright);
         let scorer = Scorer { votes: &scene.votes, field: &scene.field, start: scene.start };

@@ -79,8 +79,16 @@ struct Border {
 
 struct Merging {
     regions: Vec<Region>,
-    /// The cheapest first: cost (its bits, which order as it does), the pair, and the versions for which it holds.
-    queue: BinaryHeap<Reverse<(u32, [u32; 2], [u32; 2])>>,
+    /// The cheapest first.
+    queue: BinaryHeap<Reverse<Offer>>,
+}
+
+/// What it costs to merge two regions, as they are at these versions; ordered by the cost, whose bits order as it does.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Offer {
+    cost_bits: u32,
+    pair: [u32; 2],
+    versions: [u32; 2],
 }
 
 impl Merging {
@@ -116,7 +124,7 @@ impl Merging {
         }
         let mut left = self.regions.len();
         while left > count.max(1) {
-            let Some(Reverse((_, [a, b], versions))) = self.queue.pop() else { break };
+            let Some(Reverse(Offer { pair: [a, b], versions, .. })) = self.queue.pop() else { break };
             let holds = [a, b].iter().zip(versions).all(|(&region, version)| {
                 let region = &self.regions[region as usize];
                 region.part_of.is_none() && region.version == version
@@ -156,8 +164,11 @@ impl Merging {
         let here = &self.regions[region as usize];
         for border in here.borders.iter().filter(|border| wanted(border.with)) {
             let there = &self.regions[border.with as usize];
-            let cost = merging_cost(here, there, border);
-            self.queue.push(Reverse((cost.to_bits(), [region, border.with], [here.version, there.version])));
+            self.queue.push(Reverse(Offer {
+                cost_bits: merging_cost(here, there, border).to_bits(),
+                pair: [region, border.with],
+                versions: [here.version, there.version],
+            }));
         }
     }
 

@@ -43,7 +43,18 @@ pub fn lift_superpixels(
     options: &SuperpixelOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<LiftedSuperpixels, ImageryError> {
-    let files = find_files(reconstruction, source)?;
+    lift_superpixels_of(reconstruction, &|_| true, source, options, progress)
+}
+
+/// [`lift_superpixels`] of those images alone that are `wanted`; the others are taken as if they were not there.
+pub fn lift_superpixels_of(
+    reconstruction: &Reconstruction,
+    wanted: &dyn Fn(&Image) -> bool,
+    source: &SuperpixelSource,
+    options: &SlicOptions,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<LiftedSuperpixels, ImageryError> {
+    let files = find_files(reconstruction, wanted, source)?;
     let done = AtomicUsize::new(0);
     // Every image has its slot, so that neither the result nor the error that is told depends on the threads; a thread
     // holds one picture at a time.
@@ -71,14 +82,18 @@ struct Files {
     missing: Vec<ImageIndex>,
 }
 
-fn find_files(reconstruction: &Reconstruction, source: &SuperpixelSource) -> Result<Files, ImageryError> {
+fn find_files(
+    reconstruction: &Reconstruction,
+    wanted: &dyn Fn(&Image) -> bool,
+    source: &SuperpixelSource,
+) -> Result<Files, ImageryError> {
     let (noun, folder) = (source.noun(), source.folder());
     if let Err(error) = std::fs::read_dir(folder) {
         return Err(ImageryError::Folder { noun, folder: folder.to_path_buf(), reason: error.to_string() });
     }
     let mut files = Files { found: Vec::new(), missing: Vec::new() };
     for (index, image) in reconstruction.images.iter().enumerate() {
-        if !image.observations.iter().any(|observation| observation.point.is_some()) {
+        if !wanted(image) || !image.observations.iter().any(|observation| observation.point.is_some()) {
             continue;
         }
         let index = ImageIndex(index as u32);

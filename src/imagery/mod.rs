@@ -19,7 +19,7 @@ mod superpixels;
 use std::path::{Path, PathBuf};
 
 pub use labels::LabelMap;
-pub use lift::{LiftedSuperpixels, Superpixel, lift_superpixels};
+pub use lift::{LiftedSuperpixels, Superpixel, lift_superpixels, lift_superpixels_of};
 pub use superpixels::{SuperpixelOptions, cut_superpixels};
 
 /// Where superpixels come from.

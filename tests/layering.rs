@@ -16,7 +16,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("planes", &["geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["geometry", "city", "planes", "solvers", "robust"]),
     ("verdict", &["geometry", "robust"]),
-    ("merging", &["geometry", "format", "reconstruction", "imagery", "robust", "verdict"]),
+    ("merging", &["geometry", "format", "reconstruction", "imagery", "solvers", "robust", "planes", "verdict"]),
     ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict", "merging"]),
     (
         "align",

@@ -140,6 +140,10 @@ pub struct MergeArgs {
     /// Folder of label images (PNG, grey, 8 or 16 bit; 0 is no superpixel), named as the photographs
     #[arg(long, value_name = "DIR")]
     pub labels: Option<PathBuf>,
+    /// What of the shared photographs is used: point pairs, camera poses and, with --photos or --labels, planes of
+    /// superpixels; or those planes alone, to study them
+    #[arg(long, value_name = "WHICH", value_enum, default_value_t = EvidenceArg::All)]
+    pub evidence: EvidenceArg,
     /// City model in which the parts meet: OBJ, glTF or GLB; needs one --start for every part
     #[arg(long, value_name = "CITY")]
     pub city: Option<PathBuf>,
@@ -218,6 +222,12 @@ pub struct SolveArgs {
 pub enum CityUpArg {
     Z,
     Y,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EvidenceArg {
+    All,
+    Planes,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]

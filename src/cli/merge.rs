@@ -1,17 +1,21 @@
 //! `cityweld merge`
 
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use cityweld::city::{CityModel, read_city};
 use cityweld::export::{OutputKind, merge_report, write_merge};
 use cityweld::format::read_start;
-use cityweld::imagery::{ImageryError, SuperpixelOptions, SuperpixelSource, lift_superpixels};
-use cityweld::merging::{Anchor, Merge, MergeOptions, MergeVerdict, Part, merge};
-use cityweld::reconstruction::read_reconstruction;
+use cityweld::imagery::{
+    ImageryError, ImageryWarning, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels,
+    lift_superpixels_of,
+};
+use cityweld::merging::{Anchor, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
+use cityweld::reconstruction::{Image, read_reconstruction};
 use cityweld::{AlignOptions, Up};
 
-use super::args::MergeArgs;
+use super::args::{EvidenceArg, MergeArgs};
 use super::plan::{CityFiles, keeps_inputs};
 use super::{Outcome, Session, summary};
 
@@ -20,7 +24,11 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
     let output = session.begin(&args.output, OutputKind::Folder)?;
     let voice = &session.voice;
     let city = read_the_city(args, session)?;
-    let options = MergeOptions { seed: session.common.seed };
+    let evidence = match args.evidence {
+        EvidenceArg::All => EvidenceChoice::All,
+        EvidenceArg::Planes => EvidenceChoice::Planes,
+    };
+    let options = MergeOptions { seed: session.common.seed, evidence };
     // The parts go before the files are written: a model is as large as they are.
     let merged = merge(&read_parts(args, city.as_ref(), session)?, &options, &|stage| voice.detail(stage))?;
     voice.detail(&format!("{}: {}", merged.verdict.word(), merged.reason));
@@ -52,6 +60,10 @@ fn check(args: &MergeArgs) -> Result<()> {
     let mut inputs: Vec<&PathBuf> = args.parts.iter().collect();
     inputs.extend(args.city.iter().chain(&args.terrain).chain(&args.start).chain(&args.labels).chain(&args.photos));
     keeps_inputs(&args.output, &inputs)?;
+    ensure!(
+        args.evidence == EvidenceArg::All || superpixel_source(args).is_some(),
+        "--evidence planes needs superpixels; give their label images with --labels, or the photographs with --photos"
+    );
     if args.city.is_none() {
         ensure!(args.start.is_empty(), "--start says where the parts are in a city; give the city with --city");
         ensure!(args.terrain.is_empty(), "--terrain belongs to a city; give the city with --city");
@@ -74,46 +86,95 @@ fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<CityModel
 }
 
 fn read_parts(args: &MergeArgs, city: Option<&CityModel>, session: &Session) -> Result<Vec<Part>> {
-    if city.is_none() && (args.labels.is_some() || args.photos.is_some()) {
-        let text = "superpixels do not join parts yet, only --city uses --labels and --photos; keypoints and poses do";
-        session.voice.warnings([&text.to_owned()]);
-    }
-    let names = unique_names(&args.parts);
     let mut parts = Vec::new();
-    for (index, (path, name)) in args.parts.iter().zip(names).enumerate() {
+    for (index, (path, name)) in args.parts.iter().zip(unique_names(&args.parts)).enumerate() {
         session.voice.bar.show("reading the parts", index, args.parts.len());
         let sfm = read_reconstruction(path)?;
         session.voice.detail(&format!("{name}: {} points, {} images", sfm.points.len(), sfm.images.len()));
-        let labels = args.labels.clone().map(SuperpixelSource::Labels);
-        let source = labels.or_else(|| args.photos.clone().map(SuperpixelSource::Photos));
-        let superpixels = match source.filter(|_| city.is_some()) {
-            None => None,
-            Some(source) => match lift_superpixels(&sfm, &source, &SuperpixelOptions::default(), &|_, _| ()) {
-                // Only shared photographs matter; a part without any file there has nothing to add.
-                Err(ImageryError::NothingFound { .. } | ImageryError::NoImages { .. }) => None,
-                lifted => Some(without_missing(lifted?)),
-            },
-        };
-        let mut part = Part { name, sfm, superpixels, anchor: None };
-        if let Some(city) = city {
-            part.anchor = Some(anchor(&part, city, &args.start[index], session)?);
-        }
-        parts.push(part);
+        parts.push(Part { name, sfm, superpixels: None, anchor: None });
     }
+    let Some(source) = superpixel_source(args) else {
+        anchor_all(&mut parts, None, args, city, session)?;
+        return Ok(parts);
+    };
+    lift_shared(&mut parts, &source, session)?;
+    anchor_all(&mut parts, Some(&source), args, city, session)?;
     Ok(parts)
 }
 
+fn superpixel_source(args: &MergeArgs) -> Option<SuperpixelSource> {
+    let labels = args.labels.clone().map(SuperpixelSource::Labels);
+    labels.or_else(|| args.photos.clone().map(SuperpixelSource::Photos))
+}
+
+/// Superpixels of a photograph where parts are joined: so small that most show one piece of surface, and still hold a handful
+/// of points.
+const JOINING_SUPERPIXELS: usize = 1100;
+
+/// Superpixels of the photographs that several parts have; the others join nothing.
+fn lift_shared(parts: &mut [Part], source: &SuperpixelSource, session: &Session) -> Result<()> {
+    let mut parts_with: HashMap<String, usize> = HashMap::new();
+    for part in parts.iter() {
+        let names: BTreeSet<&String> = part.sfm.images.iter().map(|image| &image.name).collect();
+        names.into_iter().for_each(|name| *parts_with.entry(name.clone()).or_default() += 1);
+    }
+    let is_shared = |image: &Image| parts_with.get(&image.name).is_some_and(|count| *count > 1);
+    for part in parts.iter_mut() {
+        session.voice.bar.show("superpixels", 0, 0);
+        // Both parts must see the same superpixels, whatever keypoints each of them has.
+        let options = SuperpixelOptions { count: JOINING_SUPERPIXELS, by_keypoints: false };
+        part.superpixels = given(lift_superpixels_of(&part.sfm, &is_shared, source, &options, &|_, _| ()))?;
+    }
+    if parts.iter().all(|part| part.superpixels.is_none()) {
+        let folder = source.folder().display();
+        let text =
+            format!("no file there is that of a photograph that two parts share, so no plane joins them: {folder}");
+        session.voice.warnings([&text]);
+    }
+    Ok(())
+}
+
+/// A part of whose photographs none is there has nothing to add.
+fn given(lifted: Result<LiftedSuperpixels, ImageryError>) -> Result<Option<LiftedSuperpixels>> {
+    match lifted {
+        Err(ImageryError::NothingFound { .. } | ImageryError::NoImages { .. }) => Ok(None),
+        lifted => Ok(Some(without_missing(lifted?))),
+    }
+}
+
+fn anchor_all(
+    parts: &mut [Part],
+    source: Option<&SuperpixelSource>,
+    args: &MergeArgs,
+    city: Option<&CityModel>,
+    session: &Session,
+) -> Result<()> {
+    let Some(city) = city else { return Ok(()) };
+    for (part, start) in parts.iter_mut().zip(&args.start) {
+        let lift = |source| given(lift_superpixels(&part.sfm, source, &SuperpixelOptions::default(), &|_, _| ()));
+        let superpixels = source.map(lift).transpose()?.flatten();
+        part.anchor = Some(anchor(part, superpixels.as_ref(), city, start, session)?);
+    }
+    Ok(())
+}
+
 /// Photographs of which only the shared ones were given are the normal case, no matter for a warning.
-fn without_missing(mut lifted: cityweld::imagery::LiftedSuperpixels) -> cityweld::imagery::LiftedSuperpixels {
-    lifted.warnings.retain(|w| !matches!(w, cityweld::imagery::ImageryWarning::Missing { .. }));
+fn without_missing(mut lifted: LiftedSuperpixels) -> LiftedSuperpixels {
+    lifted.warnings.retain(|w| !matches!(w, ImageryWarning::Missing { .. }));
     lifted
 }
 
-fn anchor(part: &Part, city: &CityModel, start: &Path, session: &Session) -> Result<Anchor> {
+fn anchor(
+    part: &Part,
+    superpixels: Option<&LiftedSuperpixels>,
+    city: &CityModel,
+    start: &Path,
+    session: &Session,
+) -> Result<Anchor> {
     let options =
         AlignOptions { start: read_start(start)?, fixed_scale: None, up: Up::Auto, seed: session.common.seed };
     let progress = |stage, done, all| session.voice.bar.show(stage, done, all);
-    let found = cityweld::align(city, &part.sfm, part.superpixels.as_ref(), &options, &progress);
+    let found = cityweld::align(city, &part.sfm, superpixels, &options, &progress);
     let anchor = Anchor::of(&found, &part.sfm, options.start.city_from_sfm);
     session.voice.detail(&format!("{}: {}", part.name, anchor.reason));
     Ok(anchor)

@@ -51,7 +51,7 @@ pub fn lift_superpixels_of(
     reconstruction: &Reconstruction,
     wanted: &dyn Fn(&Image) -> bool,
     source: &SuperpixelSource,
-    options: &SlicOptions,
+    options: &SuperpixelOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<LiftedSuperpixels, ImageryError> {
     let files = find_files(reconstruction, wanted, source)?;
@@ -148,7 +148,7 @@ fn lift_image(
             let found = photo.pixels.dimensions();
             let image_size = size_in_camera(camera, found, source.noun(), path)?;
             let scaled = (found != image_size).then_some((found, image_size));
-            let keypoints = keypoints_in(image, image_size, found);
+            let keypoints = if options.by_keypoints { keypoints_in(image, image_size, found) } else { Vec::new() };
             (cut_superpixels(&photo.pixels, &keypoints, options), photo.truncated, scaled, image_size)
         }
     };

@@ -20,11 +20,14 @@ use super::slic::{Cells, slic};
 pub struct SuperpixelOptions {
     /// As many are left of each photograph.
     pub count: usize,
+    /// Whether superpixels are smaller where the reconstruction has keypoints. Two reconstructions of one photograph have
+    /// the same superpixels only without.
+    pub by_keypoints: bool,
 }
 
 impl Default for SuperpixelOptions {
     fn default() -> SuperpixelOptions {
-        SuperpixelOptions { count: 150 }
+        SuperpixelOptions { count: 150, by_keypoints: true }
     }
 }
 
@@ -280,14 +283,14 @@ mod tests {
     #[test]
     fn as_many_superpixels_are_left_as_asked_for() {
         for count in [1, 3, 20] {
-            let map = cut_superpixels(&corner(), &[], &SuperpixelOptions { count });
+            let map = cut_superpixels(&corner(), &[], &SuperpixelOptions { count, ..SuperpixelOptions::default() });
             assert_eq!(labels_of(&map, |_, _| true), (1..=count as u32).collect());
         }
     }
 
     #[test]
     fn no_superpixel_lies_on_both_sides_of_an_edge() {
-        let map = cut_superpixels(&corner(), &[], &SuperpixelOptions { count: 6 });
+        let map = cut_superpixels(&corner(), &[], &SuperpixelOptions { count: 6, ..SuperpixelOptions::default() });
         let sky = labels_of(&map, |_, y| y < 19);
         let left = labels_of(&map, |x, y| x < 46 && y > 21);
         let right = labels_of(&map, |x, y| x > 48 && y > 21);
@@ -299,7 +302,8 @@ mod tests {
         let keypoints: Vec<(f64, f64)> =
             (0..200).map(|i| (60.0 + f64::from(i % 50), 30.0 + f64::from(i / 50) * 12.0)).collect();
         let on_right = |keypoints: &[(f64, f64)]| {
-            let map = cut_superpixels(&corner(), keypoints, &SuperpixelOptions { count: 20 });
+            let map =
+                cut_superpixels(&corner(), keypoints, &SuperpixelOptions { count: 20, ..SuperpixelOptions::default() });
             labels_of(&map, |x, y| x > 48 && y > 21).len()
         };
         assert!(on_right(&keypoints) > on_right(&[]));

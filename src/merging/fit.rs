@@ -8,7 +8,10 @@
 
 use nalgebra::{Matrix3, Rotation3, SMatrix, Vector3};
 
+use super::design_effect::design_effect;
 use super::evidence::{CameraPair, Evidence, Pair};
+use super::plane_evidence::PlaneEvidence;
+use super::plane_fit::{add_planes, information_of_tilts, without};
 use super::sigma::median;
 use crate::geometry::{Point3, Similarity};
 use crate::robust::{
@@ -16,7 +19,7 @@ use crate::robust::{
 };
 
 /// A pair further off than this many sigmas is a mismatch.
-const GATE: f64 = 4.0;
+pub(super) const GATE: f64 = 4.0;
 /// Median of the norm of a whitened residual with three degrees of freedom (square root of the chi-square's 2.366).
 const MEDIAN_NORM: f64 = 1.538;
 /// The bend is sought between these shares of the scene's radius; the search starts with the middle one.
@@ -24,7 +27,7 @@ const BEND_SHARES: [f64; 3] = [1e-7, 5e-3, 5e-2];
 /// Pairs used to rank hypotheses; more say nothing new.
 const SCORED_PAIRS: usize = 250;
 /// As many independent pairs all pairs together count at most, since their bend is common to neighbours.
-const INDEPENDENT_PAIRS: f64 = 200.0;
+pub(super) const INDEPENDENT: f64 = 200.0;
 /// One sigma of a camera's rotation between two reconstructions, radians, and its centre in units of the bend.
 const ROTATION_SIGMA_RAD: f64 = 1.5e-3;
 const CENTER_BENDS: f64 = 1.0;
@@ -32,8 +35,8 @@ const CENTER_BENDS: f64 = 1.0;
 const CAMERA_GATE: f64 = 3.0;
 /// Ratio of the second spread to the first below which points lie on a line: rounding.
 const ON_A_LINE: f64 = 1e-9;
-const ROUNDS: usize = 25;
-const CONVERGED: f64 = 1e-10;
+pub(super) const ROUNDS: usize = 25;
+pub(super) const CONVERGED: f64 = 1e-10;
 
 /// What one pair of parts gives.
 #[derive(Clone, Debug)]
@@ -62,24 +65,79 @@ pub(super) fn fit(evidence: &Evidence, seed: u64) -> Option<Fit> {
     let pairs = &evidence.pairs;
     let radius = evidence.radius_a;
     let start = search(pairs, &evidence.cameras, radius, seed)?;
-    let mut bend = BEND_SHARES[1] * radius;
+    let mut terms = Terms::of_pairs(pairs, BEND_SHARES[1] * radius, radius);
     let mut pose = start.pose;
     for _ in 0..4 {
-        pose = refine(pairs, &[], &pose, bend, radius);
-        bend = bend_of(pairs, &pose, radius);
+        pose = refine(&terms, &pose);
+        terms.bend = bend_of(pairs, &pose, radius);
     }
-    pose = refine(pairs, &[], &pose, bend, radius);
-    let cameras_used: Vec<bool> = evidence.cameras.iter().map(|c| agrees(c, &pose, bend)).collect();
-    let used: Vec<&CameraPair> =
-        evidence.cameras.iter().zip(&cameras_used).filter(|(_, used)| **used).map(|(c, _)| c).collect();
-    pose = refine(pairs, &used, &pose, bend, radius);
-    Some(finish(pairs, &used, pose, bend, radius, cameras_used))
+    pose = refine(&terms, &pose);
+    let cameras_used: Vec<bool> = evidence.cameras.iter().map(|c| agrees(c, &pose, terms.bend)).collect();
+    terms.cameras = evidence.cameras.iter().zip(&cameras_used).filter(|(_, used)| **used).map(|(c, _)| c).collect();
+    pose = refine(&terms, &pose);
+    Some(finish(&terms, pose, cameras_used))
+}
+
+/// The pairs and cameras of a fit once more, and planes with them.
+pub(super) fn fit_with_planes(evidence: &Evidence, fit: &Fit, planes: PlaneTerm) -> Fit {
+    let mut terms = Terms::of_pairs(&evidence.pairs, fit.bend, evidence.radius_a);
+    terms.cameras = evidence.cameras.iter().zip(&fit.cameras_used).filter(|(_, used)| **used).map(|(c, _)| c).collect();
+    terms.planes = Some(planes);
+    let pose = refine(&terms, &fit.a_from_b);
+    finish(&terms, pose, fit.cameras_used.clone())
+}
+
+/// The pairs by themselves about the place of a fit, and how much more they scatter than their rows say.
+pub(super) fn fit_of_pairs(evidence: &Evidence, fit: &Fit) -> (Fit, f64) {
+    let terms = Terms::of_pairs(&evidence.pairs, fit.bend, evidence.radius_a);
+    let pose = refine(&terms, &fit.a_from_b);
+    let mut own = finish(&terms, pose, Vec::new());
+    let factor = f64::max(own.inlier_count() as f64 / INDEPENDENT, 1.0).recip();
+    let sums: Vec<NormalEquations> = evidence
+        .pairs
+        .iter()
+        .map(|pair| {
+            let one = Terms::of_pairs(std::slice::from_ref(pair), fit.bend, evidence.radius_a);
+            let of_pair = equations(&one, &pose, &own.chart);
+            NormalEquations { information: of_pair.information * factor, gradient: of_pair.gradient * factor }
+        })
+        .collect();
+    let places: Vec<Point3<f64>> = evidence.pairs.iter().map(|p| p.in_a).collect();
+    let effect = design_effect(&places, &sums);
+    own.information /= effect;
+    (own, effect)
+}
+
+/// Planes as a source among others.
+#[derive(Clone, Copy)]
+pub(super) struct PlaneTerm<'a> {
+    pub evidence: &'a PlaneEvidence,
+    /// A share of the radius.
+    pub bend: f64,
+    /// Times the weight that their rows have by themselves.
+    pub factor: f64,
+}
+
+/// What a pose is fitted to.
+struct Terms<'a> {
+    pairs: &'a [Pair],
+    cameras: Vec<&'a CameraPair>,
+    planes: Option<PlaneTerm<'a>>,
+    /// Of pairs and cameras, a's units.
+    bend: f64,
+    radius: f64,
+}
+
+impl<'a> Terms<'a> {
+    fn of_pairs(pairs: &'a [Pair], bend: f64, radius: f64) -> Terms<'a> {
+        Terms { pairs, cameras: Vec::new(), planes: None, bend, radius }
+    }
 }
 
 /// The best consensus of the pairs as they stand, without refinement; for comparing with a mirrored part.
 pub(super) fn consensus(pairs: &[Pair], radius: f64, bend: f64, seed: u64) -> f64 {
     let Some(start) = search(pairs, &[], radius, seed) else { return 0.0 };
-    let pose = refine(pairs, &[], &start.pose, bend, radius);
+    let pose = refine(&Terms::of_pairs(pairs, bend, radius), &start.pose);
     pairs.iter().map(|pair| vote(whitened(pair, &pose, bend).norm_squared(), GATE)).sum()
 }
 
@@ -112,7 +170,7 @@ fn search(pairs: &[Pair], cameras: &[CameraPair], radius: f64, seed: u64) -> Opt
     let (ranked, _) = ransac(&search, &options, |_| ());
     let by_pairs = ranked.first().map(|best| Start { pose: best.pose, score: best.score });
     let by_cameras = cameras.iter().filter_map(CameraPair::a_from_b).map(|pose| {
-        let refined = refine(pairs, &[], &pose, search.bend, radius);
+        let refined = refine(&Terms::of_pairs(pairs, search.bend, radius), &pose);
         Start { score: search.score(&refined), pose: refined }
     });
     by_pairs.into_iter().chain(by_cameras).max_by(|a, b| a.score.total_cmp(&b.score))
@@ -226,10 +284,11 @@ fn chart_of(pairs: &[Pair], pose: &Similarity, radius: f64) -> Chart {
     Chart { center: Point3::from(sum / pairs.len().max(1) as f64), radius }
 }
 
-fn equations(pairs: &[Pair], cameras: &[&CameraPair], pose: &Similarity, bend: f64, chart: &Chart) -> NormalEquations {
+fn equations(terms: &Terms, pose: &Similarity, chart: &Chart) -> NormalEquations {
+    let bend = terms.bend;
     let mut of_pairs = NormalEquations::default();
     let mut weights = 0.0;
-    for pair in pairs {
+    for pair in terms.pairs {
         let x = pose.apply(&pair.in_b);
         let whitening = whitening(pair, pose, bend);
         let residual = whitening * (x - pair.in_a);
@@ -240,8 +299,8 @@ fn equations(pairs: &[Pair], cameras: &[&CameraPair], pose: &Similarity, bend: f
         }
     }
     let mut sums = NormalEquations::default();
-    sums.merge(&of_pairs, (INDEPENDENT_PAIRS / f64::max(weights, 1.0)).min(1.0));
-    for camera in cameras {
+    sums.merge(&of_pairs, (INDEPENDENT / f64::max(weights, 1.0)).min(1.0));
+    for camera in &terms.cameras {
         let x = pose.apply(&camera.center_b);
         let whitening = center_whitening(camera, bend);
         let (center, turn) = camera_residuals(camera, pose, bend);
@@ -252,32 +311,33 @@ fn equations(pairs: &[Pair], cameras: &[&CameraPair], pose: &Similarity, bend: f
             sums.add(&row, turn[k], 1.0);
         }
     }
+    if let Some(planes) = &terms.planes {
+        add_planes(planes.evidence, pose, planes.bend, chart, planes.factor, &mut sums);
+    }
     sums
 }
 
-fn refine(pairs: &[Pair], cameras: &[&CameraPair], start: &Similarity, bend: f64, radius: f64) -> Similarity {
+fn refine(terms: &Terms, start: &Similarity) -> Similarity {
     let mut pose = *start;
     for _ in 0..ROUNDS {
-        let chart = chart_of(pairs, &pose, radius);
-        let step = equations(pairs, cameras, &pose, bend, &chart).step(radius);
+        let chart = chart_of(terms.pairs, &pose, terms.radius);
+        let step = equations(terms, &pose, &chart).step(terms.radius);
         pose = chart.moved(&pose, &step);
-        if step.norm() < CONVERGED * radius {
+        if step.norm() < CONVERGED * terms.radius {
             break;
         }
     }
     pose
 }
 
-fn finish(
-    pairs: &[Pair],
-    cameras: &[&CameraPair],
-    pose: Similarity,
-    bend: f64,
-    radius: f64,
-    cameras_used: Vec<bool>,
-) -> Fit {
-    let chart = chart_of(pairs, &pose, radius);
-    let information = equations(pairs, cameras, &pose, bend, &chart).full();
+fn finish(terms: &Terms, pose: Similarity, cameras_used: Vec<bool>) -> Fit {
+    let (pairs, bend) = (terms.pairs, terms.bend);
+    let chart = chart_of(pairs, &pose, terms.radius);
+    let mut information = equations(terms, &pose, &chart).full();
+    if let Some(planes) = &terms.planes {
+        let tilts = information_of_tilts(planes.evidence, &pose, planes.bend, &chart);
+        information = without(&information, &(tilts * planes.factor));
+    }
     let inliers: Vec<bool> = pairs.iter().map(|p| whitened(p, &pose, bend).norm() < GATE).collect();
     let squares: Vec<f64> = pairs
         .iter()

@@ -139,16 +139,14 @@ fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerdict, String
         let used: Vec<&Link> = network.links.iter().filter(|l| l.edge.used).collect();
         let inliers: usize = used.iter().map(|l| l.edge.inliers).sum();
         let photos: usize = used.iter().map(|l| l.edge.shared_photos.len()).sum();
+        let by_planes = used.iter().any(|l| l.edge.source == EdgeSource::Superpixels);
+        let what = if by_planes { "points on planes" } else { "point pairs" };
+        let over = format!("{placed} parts are joined over {photos} shared photographs and {inliers} agreeing {what}");
         let in_city = network.anchored.iter().filter(|used| **used).count();
         let reason = match (used.is_empty(), in_city) {
             (true, _) => format!("each of {placed} parts stands in the city by itself"),
-            (false, 0) => {
-                format!("{placed} parts are joined over {photos} shared photographs and {inliers} agreeing point pairs")
-            }
-            (false, anchors) => format!(
-                "{placed} parts are joined over {photos} shared photographs and {inliers} agreeing point pairs, and {anchors} \
-                 stand in the city by themselves"
-            ),
+            (false, 0) => over,
+            (false, anchors) => format!("{over}, and {anchors} stand in the city by themselves"),
         };
         return (MergeVerdict::Merged, reason);
     }

@@ -67,12 +67,12 @@ pub(super) fn judge(evidence: &Evidence, fit: Option<&Fit>, names: [&str; 2], se
         ));
     }
     shape(evidence, fit, seed)
-        .or_else(|| cameras(evidence, fit))
-        .or_else(|| freedoms(evidence, fit))
+        .or_else(|| cameras(evidence, fit, "point pairs"))
+        .or_else(|| freedoms(evidence, fit, "point pairs"))
         .unwrap_or(Opinion::Together)
 }
 
-fn unsound(evidence: &Evidence, names: [&str; 2]) -> Option<String> {
+pub(super) fn unsound(evidence: &Evidence, names: [&str; 2]) -> Option<String> {
     let (which, error) = if evidence.own_error[0] >= evidence.own_error[1] {
         (names[0], evidence.own_error[0])
     } else {
@@ -134,7 +134,7 @@ fn stretch(evidence: &Evidence, fit: &Fit) -> Option<(f64, f64)> {
 }
 
 /// Where the shared cameras stand, against the pairs.
-fn cameras(evidence: &Evidence, fit: &Fit) -> Option<Opinion> {
+pub(super) fn cameras(evidence: &Evidence, fit: &Fit, what: &str) -> Option<Opinion> {
     let mut best: Option<(f64, f64)> = None;
     for camera in &evidence.cameras {
         let turn = (fit.a_from_b.rotation * camera.a_from_b_rotation.inverse()).angle().to_degrees();
@@ -148,20 +148,20 @@ fn cameras(evidence: &Evidence, fit: &Fit) -> Option<Opinion> {
     let (turn, shift) = best?;
     (turn > MOST_TURN_DEG || shift > 1.0).then(|| {
         Opinion::Apart(format!(
-            "the shared photograph's two poses contradict the point pairs (turned by {turn:.1} deg, shifted by {shift:.1} \
+            "the shared photograph's two poses contradict the {what} (turned by {turn:.1} deg, shifted by {shift:.1} \
              times what would be allowed)"
         ))
     })
 }
 
-fn freedoms(evidence: &Evidence, fit: &Fit) -> Option<Opinion> {
+pub(super) fn freedoms(evidence: &Evidence, fit: &Fit, what: &str) -> Option<Opinion> {
     let eigen = nalgebra::SymmetricEigen::new(fit.information);
     let weakest = eigen.eigenvalues.min();
     let sigma = if weakest > 0.0 { weakest.sqrt().recip() } else { f64::INFINITY };
     let share = sigma / evidence.radius_a;
     (share > DETERMINED).then(|| {
         Opinion::Open(format!(
-            "{} point pairs leave one freedom open to {:.2} % of the extent (one sigma); a further shared photograph would fix it",
+            "{} {what} leave one freedom open to {:.2} % of the extent (one sigma); a further shared photograph would fix it",
             fit.inlier_count(),
             50.0 * share.min(1e4)
         ))

@@ -4,22 +4,32 @@
 //!              points and observations are the same?
 //! Input        parts as they were reconstructed, each in a frame of its own; photographs are told by name alone
 //! Output       [`Merge`]: a verdict, every part's place or the reason why it has none, one model, and a balanced [`Ledger`]
-//! Method       shared photographs give point pairs and camera poses, which are fitted and judged pair by pair; accepted pairs
+//! Method       shared photographs give point pairs, camera poses and, with superpixels, planes of one part and points of the other on
+//!              them, which are fitted together and judged for each two parts; accepted pairs
 //!              form a graph that is solved as a whole; what was placed is fused
 //! Assumptions  a photograph of one name shows the same pixels in both parts, at whatever size
 //! Fails when   two parts share no photograph and no anchor, or their shared photographs have too few keypoints in common
 
 mod adjust;
 mod cycles;
+mod design_effect;
+mod disagreement;
 mod evidence;
 mod fit;
 mod freedoms;
 mod fuse;
 mod graph;
+mod joint;
 mod judge;
 mod ledger;
 mod links;
 mod pairwise;
+mod plane_evidence;
+mod plane_fit;
+mod plane_judge;
+#[cfg(test)]
+mod plane_scene;
+mod plane_search;
 mod sigma;
 
 pub use ledger::{Account, Ledger, Unbalanced};
@@ -37,7 +47,7 @@ pub struct Part {
     /// Unique among the parts.
     pub name: String,
     pub sfm: Reconstruction,
-    /// Of its photographs, where labels or photographs were given.
+    /// Of the photographs that it shares with others, where labels or photographs were given.
     pub superpixels: Option<LiftedSuperpixels>,
     /// Where the part stands in a common frame already (a city's), and how far that is to be relied on.
     pub anchor: Option<Anchor>,
@@ -87,6 +97,17 @@ impl Anchor {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MergeOptions {
     pub seed: u64,
+    pub evidence: EvidenceChoice,
+}
+
+/// What is taken from the shared photographs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EvidenceChoice {
+    /// Point pairs, camera poses, and planes where the parts have superpixels.
+    #[default]
+    All,
+    /// The planes of superpixels alone, to study them.
+    Planes,
 }
 
 /// How sure the program is that the parts are one.
@@ -190,11 +211,13 @@ pub fn merge(parts: &[Part], options: &MergeOptions, progress: &dyn Fn(&str)) ->
         (None, Ledger::nothing_placed(parts))
     };
     ledger.check(parts, model.as_ref())?;
+    let disagreements = solved.edges.iter().filter_map(|edge| disagreement(parts, edge));
     let warnings = parts.iter().flat_map(|part| {
         let own = part.sfm.warnings.iter().map(ToString::to_string);
         let imagery = part.superpixels.iter().flat_map(|s| s.warnings.iter().map(ToString::to_string));
         own.chain(imagery).map(|text| format!("{}: {text}", part.name)).collect::<Vec<_>>()
     });
+    let warnings = warnings.chain(disagreements).collect();
     Ok(Merge {
         verdict: solved.verdict,
         reason: solved.reason,
@@ -203,9 +226,17 @@ pub fn merge(parts: &[Part], options: &MergeOptions, progress: &dyn Fn(&str)) ->
         parts: solved.places,
         edges: solved.edges,
         ledger,
-        warnings: warnings.collect(),
+        warnings,
         model,
     })
+}
+
+/// What is to be said of an edge although it is used.
+fn disagreement(parts: &[Part], edge: &Edge) -> Option<String> {
+    let (a, b) = (&parts[edge.a], &parts[edge.b]);
+    let has_planes = a.superpixels.is_some() && b.superpixels.is_some();
+    let told = edge.reason.as_ref().filter(|_| edge.used && has_planes)?;
+    Some(format!("{} and {}: {told}", a.name, b.name))
 }
 
 /// The parts by their content, so that neither names of folders nor the order of the arguments decide anything.

@@ -2,11 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::evidence::gather;
+use super::evidence::{Evidence, gather};
 use super::fit::{Fit, fit};
+use super::joint::{Joint, with_planes};
 use super::judge::{Opinion, judge};
 use super::links::shared_photos;
-use super::{MergeOptions, Part};
+use super::plane_evidence::{PlaneEvidence, gather_planes};
+use super::plane_judge::judge_planes;
+use super::plane_search::fit_planes;
+use super::{EvidenceChoice, MergeOptions, Part};
 
 /// What joins two parts, as the report tells it.
 #[derive(Clone, Debug)]
@@ -65,29 +69,84 @@ fn link(parts: &[Part], a: usize, b: usize, options: &MergeOptions) -> Option<Li
     if photos.is_empty() {
         return None;
     }
-    let names = photos.iter().map(|p| p.name.clone()).collect();
+    let planes = gather_planes(&parts[a], &parts[b], &photos);
     let evidence = gather(&parts[a], &parts[b], photos);
-    let fit = fit(&evidence, options.seed);
-    let opinion = judge(&evidence, fit.as_ref(), [&parts[a].name, &parts[b].name], options.seed);
+    let names = [parts[a].name.as_str(), parts[b].name.as_str()];
+    match options.evidence {
+        EvidenceChoice::All => Some(link_by_all([a, b], names, &evidence, planes.as_ref(), options.seed)),
+        EvidenceChoice::Planes => Some(link_by_planes([a, b], names, &evidence, planes.as_ref(), options.seed)),
+    }
+}
+
+fn link_by_all(
+    [a, b]: [usize; 2],
+    names: [&str; 2],
+    evidence: &Evidence,
+    planes: Option<&PlaneEvidence>,
+    seed: u64,
+) -> Link {
+    let by_pairs = fit(evidence, seed);
+    let joint = match (by_pairs, planes) {
+        (Some(by_pairs), Some(planes)) => Some(with_planes(evidence, by_pairs, planes, seed)),
+        (by_pairs, _) => by_pairs.map(|fit| Joint { fit, note: None, contradiction: None }),
+    };
+    let opinion = match judge(evidence, joint.as_ref().map(|j| &j.fit), names, seed) {
+        Opinion::Together => {
+            joint.as_ref().and_then(|j| j.contradiction.clone()).map_or(Opinion::Together, Opinion::Open)
+        }
+        other => other,
+    };
+    let (fit, note) = joint.map_or((None, None), |j| (Some(j.fit), j.note));
     let left_out = fit.iter().flat_map(|f| &f.cameras_used).filter(|used| !**used).count();
-    let reason = match &opinion {
-        Opinion::Together if left_out > 0 => Some(format!(
+    let cameras_left_out = (left_out > 0).then(|| {
+        format!(
             "the poses of {left_out} of {} shared photographs disagree with the point pairs and were left out",
             evidence.cameras.len()
-        )),
-        Opinion::Together => None,
+        )
+    });
+    let notes: Vec<String> = cameras_left_out.into_iter().chain(note).collect();
+    let reason = match &opinion {
+        Opinion::Together => (!notes.is_empty()).then(|| notes.join("; ")),
         Opinion::Open(reason) | Opinion::Apart(reason) => Some(reason.clone()),
     };
     let edge = Edge {
         a,
         b,
         source: EdgeSource::Tracks,
-        shared_photos: names,
+        shared_photos: evidence.photos.iter().map(|p| p.name.clone()).collect(),
         pairs: evidence.pairs.len(),
         inliers: fit.as_ref().map_or(0, Fit::inlier_count),
         rms: fit.as_ref().map_or(0.0, |f| f.rms),
         used: opinion == Opinion::Together,
         reason,
     };
-    Some(Link { edge, fit, opinion })
+    Link { edge, fit, opinion }
+}
+
+fn link_by_planes(
+    [a, b]: [usize; 2],
+    names: [&str; 2],
+    evidence: &Evidence,
+    planes: Option<&PlaneEvidence>,
+    seed: u64,
+) -> Link {
+    let found = planes.and_then(|planes| fit_planes(planes, seed));
+    let opinion = judge_planes(evidence, planes, found.as_ref(), names, seed);
+    let reason = match &opinion {
+        Opinion::Together => None,
+        Opinion::Open(reason) | Opinion::Apart(reason) => Some(reason.clone()),
+    };
+    let fit = found.map(|f| f.fit);
+    let edge = Edge {
+        a,
+        b,
+        source: EdgeSource::Superpixels,
+        shared_photos: evidence.photos.iter().map(|p| p.name.clone()).collect(),
+        pairs: planes.map_or(0, PlaneEvidence::correspondences),
+        inliers: fit.as_ref().map_or(0, Fit::inlier_count),
+        rms: fit.as_ref().map_or(0.0, |f| f.rms),
+        used: opinion == Opinion::Together,
+        reason,
+    };
+    Link { edge, fit, opinion }
 }

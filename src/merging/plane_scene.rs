@@ -1,0 +1,61 @@
+//! Two parts of a yard with walls, floor and roofs, for tests: what superpixels say of it.
+
+use super::plane_evidence::{PlaneEvidence, PlaneGroup, PlaneOf, PointOnPlane, group};
+use crate::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
+
+/// The radius of part a's points.
+pub(super) const RADIUS: f64 = 6.0;
+const SUPERPIXELS: usize = 60;
+const POINTS: usize = 8;
+
+/// `a_from_b`
+pub(super) fn truth() -> Similarity {
+    Similarity {
+        scale: 1.7,
+        rotation: Rotation3::from_euler_angles(0.4, 2.0, -1.0),
+        translation: Vector3::new(3.0, -8.0, 1.0),
+    }
+}
+
+/// A sequence in -1..1 that fills evenly.
+fn wave(k: usize, step: f64) -> f64 {
+    2.0 * (k as f64 * step).fract() - 1.0
+}
+
+/// Points of superpixel `k` as one part has them, in a's frame.
+fn spots(k: usize, part: usize, noise: f64) -> Vec<Point3<f64>> {
+    let normals = [
+        Vector3::new(1.0, 0.0, 0.0),
+        Vector3::new(0.0, 1.0, 0.0),
+        Vector3::new(0.0, 0.0, 1.0),
+        Vector3::new(0.6, 0.0, 0.8),
+        Vector3::new(0.0, -0.6, 0.8),
+    ];
+    let normal = normals[k % normals.len()];
+    let u = normal.cross(&Vector3::new(0.3, 0.5, -0.8)).normalize();
+    let v = normal.cross(&u);
+    let center = normal * -3.0 + u * 4.0 * wave(k, 0.754_877_666) + v * 3.0 * wave(k, 0.569_840_291);
+    let spot = |i: usize| {
+        let j = 1 + i + 31 * k + 7000 * part;
+        let across = noise * (wave(j, 0.414_213_562) + wave(j, 0.236_067_977) + wave(j, 0.645_751_311));
+        center + u * 0.3 * wave(j, 0.618_033_989) + v * 0.3 * wave(j, 0.324_717_957) + normal * across
+    };
+    (0..POINTS).map(|i| Point3::from(spot(i))).collect()
+}
+
+/// `noise`: one sigma across the planes, a's units; `distort`: what part b has done to the world.
+pub(super) fn scene(noise: f64, distort: impl Fn(&Point3<f64>) -> Point3<f64>) -> PlaneEvidence {
+    let known = |at: Point3<f64>, sigma: f64| PointOnPlane { at, covariance: Matrix3::identity() * (sigma * sigma) };
+    let b_from_a = truth().inverse();
+    let mut groups = Vec::new();
+    for k in 0..SUPERPIXELS {
+        let in_a: Vec<_> = spots(k, 0, noise).into_iter().map(|x| known(x, noise)).collect();
+        let in_b = spots(k, 1, noise).into_iter().map(|x| b_from_a.apply(&distort(&x)));
+        let in_b: Vec<_> = in_b.map(|x| known(x, noise * b_from_a.scale)).collect();
+        let eye = Point3::new(0.4, 0.3, 0.2);
+        let forth = group(PlaneOf::A, &in_a, &in_b, &eye).unwrap();
+        let back = group(PlaneOf::B, &in_b, &in_a, &b_from_a.apply(&distort(&eye))).unwrap();
+        groups.extend([forth, back].map(|g| PlaneGroup { share: 0.5, ..g }));
+    }
+    PlaneEvidence { groups, radius: [RADIUS, RADIUS * b_from_a.scale] }
+}

@@ -9,9 +9,11 @@
 //!              3. Else both enter one robust least squares. The planes' weight against the pairs' is the ratio of their design
 //!                 effects, and less by as much as their own answer is further from the pairs' than their sigmas allow: so a source
 //!                 pulls the less, the less it can be right.
+//!              4. Once more in the same way, with all surfaces that both parts have in place of the superpixels.
 //! Assumptions  the pairs are the firmer source, since they hold three directions each
 //! Fails when   pairs and planes are wrong together; the cameras and the shape are judged apart from this ([`super::judge`])
 
+use super::Part;
 use super::disagreement::{Apart, apart};
 use super::evidence::Evidence;
 use super::fit::{Fit, PlaneTerm, fit_of_pairs, fit_with_planes};
@@ -19,6 +21,7 @@ use super::plane_evidence::PlaneEvidence;
 use super::plane_fit::{PlaneFit, settle, share_on_planes};
 use super::plane_judge::{FEWEST_ON_PLANES, too_few};
 use super::plane_search::fit_planes;
+use super::whole_planes::whole_planes;
 
 /// The planes contradict a place where less than this share of what agrees at their own place agrees ...
 const CONTRADICTED: f64 = 0.5;
@@ -56,6 +59,17 @@ pub(super) fn with_planes(evidence: &Evidence, by_pairs: Fit, planes: &PlaneEvid
     let fit = joint_fit(evidence, &by_pairs, planes);
     let note = disagreement(&own, &by_pairs, &fit);
     alone(fit, note)
+}
+
+/// The joint estimate once more, on all surfaces that both parts have instead of those in shared photographs alone.
+pub(super) fn on_whole_parts(evidence: &Evidence, by_pairs: &Fit, joint: Joint, [a, b]: [&Part; 2]) -> Joint {
+    if joint.contradiction.is_some() {
+        return joint;
+    }
+    match whole_planes(a, b, &joint.fit.a_from_b, joint.fit.bend) {
+        Some(planes) => Joint { fit: joint_fit(evidence, by_pairs, &planes), ..joint },
+        None => joint,
+    }
 }
 
 fn contradiction(apart: &Apart, share: f64, own_share: f64) -> String {

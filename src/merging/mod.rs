@@ -31,6 +31,7 @@ mod plane_judge;
 mod plane_scene;
 mod plane_search;
 mod sigma;
+mod whole_planes;
 
 pub use ledger::{Account, Ledger, Unbalanced};
 pub use pairwise::{Edge, EdgeSource};

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::evidence::{Evidence, gather};
 use super::fit::{Fit, fit};
-use super::joint::{Joint, with_planes};
+use super::joint::{Joint, on_whole_parts, with_planes};
 use super::judge::{Opinion, judge};
 use super::links::shared_photos;
 use super::plane_evidence::{PlaneEvidence, gather_planes};
@@ -71,23 +71,30 @@ fn link(parts: &[Part], a: usize, b: usize, options: &MergeOptions) -> Option<Li
     }
     let planes = gather_planes(&parts[a], &parts[b], &photos);
     let evidence = gather(&parts[a], &parts[b], photos);
-    let names = [parts[a].name.as_str(), parts[b].name.as_str()];
     match options.evidence {
-        EvidenceChoice::All => Some(link_by_all([a, b], names, &evidence, planes.as_ref(), options.seed)),
-        EvidenceChoice::Planes => Some(link_by_planes([a, b], names, &evidence, planes.as_ref(), options.seed)),
+        EvidenceChoice::All => {
+            Some(link_by_all([a, b], [&parts[a], &parts[b]], &evidence, planes.as_ref(), options.seed))
+        }
+        EvidenceChoice::Planes => {
+            Some(link_by_planes([a, b], [&parts[a].name, &parts[b].name], &evidence, planes.as_ref(), options.seed))
+        }
     }
 }
 
 fn link_by_all(
     [a, b]: [usize; 2],
-    names: [&str; 2],
+    parts: [&Part; 2],
     evidence: &Evidence,
     planes: Option<&PlaneEvidence>,
     seed: u64,
 ) -> Link {
+    let names = parts.map(|part| part.name.as_str());
     let by_pairs = fit(evidence, seed);
     let joint = match (by_pairs, planes) {
-        (Some(by_pairs), Some(planes)) => Some(with_planes(evidence, by_pairs, planes, seed)),
+        (Some(by_pairs), Some(planes)) => {
+            let joint = with_planes(evidence, by_pairs.clone(), planes, seed);
+            Some(on_whole_parts(evidence, &by_pairs, joint, parts))
+        }
         (by_pairs, _) => by_pairs.map(|fit| Joint { fit, note: None, contradiction: None }),
     };
     let opinion = match judge(evidence, joint.as_ref().map(|j| &j.fit), names, seed) {

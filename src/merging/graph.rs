@@ -3,6 +3,7 @@
 use super::adjust::{Held, adjust};
 use super::cycles::Network;
 use super::judge::Opinion;
+use super::meeting::meetings;
 use super::pairwise::{Edge, EdgeSource, Link};
 use super::{MergeVerdict, Part, PartPlace, PartSupport, freedoms};
 use crate::geometry::Similarity;
@@ -22,6 +23,8 @@ pub(super) fn solve(parts: &[Part], order: &[usize], links: Vec<Link>) -> Solved
     let mut network = Network::new(parts, order, links);
     let mut poses = network.settle();
     network.retire_unplaced(&poses);
+    let meetings = meetings(&network, &poses);
+    network.links.extend(meetings);
     let held = adjust(&network, &mut poses);
     let candidates = candidates(parts, &poses, &network.links);
     let in_city = network.anchored.contains(&true);
@@ -58,6 +61,16 @@ fn support(part: usize, parts: &[Part], links: &[Link]) -> PartSupport {
         shared_photos: photos.len(),
         inliers: own().map(|e| e.inliers).sum(),
         city: parts[part].anchor.as_ref().map(|a| a.support.clone()),
+    }
+}
+
+fn stands_in_city(placed: usize, network: &Network<'_>) -> String {
+    let meetings = network.links.iter().filter(|l| l.edge.used && l.edge.source == EdgeSource::City);
+    match meetings.map(|l| l.edge.inliers).sum() {
+        0 => format!("each of {placed} parts stands in the city by itself"),
+        inliers => format!(
+            "{placed} parts stand in the city and are held to each other by {inliers} points on surfaces that two of them see"
+        ),
     }
 }
 
@@ -136,7 +149,8 @@ fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerdict, String
         left.join(", ")
     };
     if placed == places.len() && placed > 1 {
-        let used: Vec<&Link> = network.links.iter().filter(|l| l.edge.used).collect();
+        let is_shared = |l: &&Link| l.edge.used && l.edge.source != EdgeSource::City;
+        let used: Vec<&Link> = network.links.iter().filter(is_shared).collect();
         let inliers: usize = used.iter().map(|l| l.edge.inliers).sum();
         let photos: usize = used.iter().map(|l| l.edge.shared_photos.len()).sum();
         let by_planes = used.iter().any(|l| l.edge.source == EdgeSource::Superpixels);
@@ -144,7 +158,7 @@ fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerdict, String
         let over = format!("{placed} parts are joined over {photos} shared photographs and {inliers} agreeing {what}");
         let in_city = network.anchored.iter().filter(|used| **used).count();
         let reason = match (used.is_empty(), in_city) {
-            (true, _) => format!("each of {placed} parts stands in the city by itself"),
+            (true, _) => stands_in_city(placed, network),
             (false, 0) => over,
             (false, anchors) => format!("{over}, and {anchors} stand in the city by themselves"),
         };
@@ -182,6 +196,10 @@ fn edges(poses: &[Option<Similarity>], network: Network<'_>) -> Vec<Edge> {
         .collect();
     let anchored: Vec<usize> = (0..parts.len()).filter(|&p| parts[p].anchor.is_some()).collect();
     for pair in anchored.windows(2) {
+        let is_told = |e: &Edge| [e.a.min(e.b), e.a.max(e.b)] == pair && e.source == EdgeSource::City;
+        if edges.iter().any(is_told) {
+            continue;
+        }
         let fault = pair.iter().find_map(|&p| anchor_faults[p].clone());
         edges.push(Edge {
             a: pair[0],

@@ -23,6 +23,7 @@ mod joint;
 mod judge;
 mod ledger;
 mod links;
+mod meeting;
 mod pairwise;
 mod plane_evidence;
 mod plane_fit;

@@ -1,7 +1,9 @@
 //! Two parts of a yard with walls, floor and roofs, for tests: what superpixels say of it.
 
+use super::Part;
 use super::plane_evidence::{PlaneEvidence, PlaneGroup, PlaneOf, PointOnPlane, group};
-use crate::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
+use crate::geometry::{Camera, CameraModel, Matrix3, Point3, Rotation3, Similarity, Vector3};
+use crate::reconstruction::{Image, ImageIndex, Reconstruction};
 
 /// The radius of part a's points.
 pub(super) const RADIUS: f64 = 6.0;
@@ -58,4 +60,46 @@ pub(super) fn scene(noise: f64, distort: impl Fn(&Point3<f64>) -> Point3<f64>) -
         groups.extend([forth, back].map(|g| PlaneGroup { share: 0.5, ..g }));
     }
     PlaneEvidence { groups, radius: [RADIUS, RADIUS * b_from_a.scale] }
+}
+
+/// Corner, two edges and the side that was seen: a floor and two walls, which both parts have, and a roof.
+const SURFACES: [[[f64; 3]; 4]; 4] = [
+    [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 1.0]],
+    [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 0.0, 4.0], [0.0, 1.0, 0.0]],
+    [[0.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 4.0], [1.0, 0.0, 0.0]],
+    [[0.0, 0.0, 9.0], [6.0, 0.0, 0.0], [0.0, 6.0, 3.0], [0.0, -0.447_213_595, 0.894_427_191]],
+];
+pub(super) const ROWS: u32 = 20;
+
+/// Half the width of the noise across the surfaces.
+pub(super) const ACROSS: f64 = 0.002;
+
+/// Three cameras in the yard; every point is seen by all.
+const EYES: [[f64; 3]; 3] = [[5.0, 5.0, 7.0], [8.0, 3.0, 6.0], [3.0, 8.0, 6.0]];
+
+/// Points on the first surfaces in an even grid, shifted by a share of its step, with noise that repeats nowhere.
+pub(super) fn part(surfaces: usize, shift: f64, part_from_world: &Similarity) -> Part {
+    let camera = Camera {
+        model: CameraModel::SimplePinhole,
+        width_px: 1000,
+        height_px: 1000,
+        params: vec![800.0, 500.0, 500.0],
+    };
+    let mut sfm = Reconstruction { cameras: vec![camera], ..Reconstruction::default() };
+    for eye in EYES {
+        let center = part_from_world.apply(&Point3::from(eye));
+        sfm.images.push(Image { cam_from_sfm_translation: -center.coords, ..Image::default() });
+    }
+    for [corner, u, v, normal] in SURFACES[..surfaces].iter().map(|s| s.map(Vector3::from)) {
+        for i in 0..ROWS * ROWS {
+            let at = |k: u32| (f64::from(k) + 0.1 + shift) / f64::from(ROWS);
+            let across = ACROSS * ((f64::from(i) * 0.618_033_989 + shift).fract() * 2.0 - 1.0);
+            let x = Point3::from(corner + u * at(i % ROWS) + v * at(i / ROWS) + normal * across);
+            sfm.points.push(part_from_world.apply(&x));
+            sfm.track_starts.push(sfm.track_elements.len() as u32);
+            sfm.track_elements.extend((0..EYES.len() as u32).map(|image| (ImageIndex(image), i)));
+        }
+    }
+    sfm.track_starts.push(sfm.track_elements.len() as u32);
+    Part { name: String::new(), sfm, superpixels: None, anchor: None }
 }

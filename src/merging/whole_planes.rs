@@ -125,36 +125,8 @@ fn groups_on(
 
 #[cfg(test)]
 mod tests {
-    use super::super::plane_scene::truth;
+    use super::super::plane_scene::{ACROSS, ROWS, part, truth};
     use super::*;
-    use crate::reconstruction::Reconstruction;
-
-    /// Corner, two edges and the side that was seen: a floor and two walls, which both parts have, and a roof.
-    const SURFACES: [[[f64; 3]; 4]; 4] = [
-        [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 1.0]],
-        [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 0.0, 4.0], [0.0, 1.0, 0.0]],
-        [[0.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 4.0], [1.0, 0.0, 0.0]],
-        [[0.0, 0.0, 9.0], [6.0, 0.0, 0.0], [0.0, 6.0, 3.0], [0.0, -0.447_213_595, 0.894_427_191]],
-    ];
-    const ROWS: u32 = 20;
-
-    /// Half the width of the noise across the surfaces.
-    const NOISE: f64 = 0.002;
-
-    /// Points on the first surfaces in an even grid, shifted by a share of its step, with noise that repeats nowhere.
-    fn part(surfaces: usize, shift: f64, part_from_world: &Similarity) -> Part {
-        let mut sfm = Reconstruction::default();
-        for [corner, u, v, normal] in SURFACES[..surfaces].iter().map(|s| s.map(Vector3::from)) {
-            for i in 0..ROWS * ROWS {
-                let at = |k: u32| (f64::from(k) + 0.1 + shift) / f64::from(ROWS);
-                let across = NOISE * ((f64::from(i) * 0.618_033_989 + shift).fract() * 2.0 - 1.0);
-                let x = Point3::from(corner + u * at(i % ROWS) + v * at(i / ROWS) + normal * across);
-                sfm.points.push(part_from_world.apply(&x));
-                sfm.normals.push(part_from_world.rotation * normal);
-            }
-        }
-        Part { name: String::new(), sfm, superpixels: None, anchor: None }
-    }
 
     #[test]
     fn points_go_to_the_surface_that_both_parts_have_both_ways() {
@@ -167,7 +139,7 @@ mod tests {
         for group in &found.groups {
             for point in &group.points {
                 let m = group.measured(point, &truth(), 0.0, found.radius);
-                assert!(m.residual.abs() < 3.0 * NOISE && !m.is_beside, "{}", m.residual);
+                assert!(m.residual.abs() < 3.0 * ACROSS && !m.is_beside, "{}", m.residual);
             }
         }
         // Nearly all points of the shared surfaces; those at an edge may have their neighbour round the corner.

@@ -441,3 +441,13 @@ fn align_turns_freely_where_up_is_not_used_and_names_its_solver() {
         assert!(report.contains(&format!("\"solver\": \"{solver}\"")), "{more:?}: {report}");
     }
 }
+
+#[test]
+fn superpixels_of_parts_that_share_no_photograph_are_not_missed() {
+    let room = tempfile::tempdir().unwrap();
+    let [sample, labels] = ["sfm", "labels"].map(|name| repository(&format!("assets/sample/{name}")));
+    let other = repository("tests/data/reconstruction/rig_bin");
+    let output = cityweld(&room, &["merge", &sample, &other, "--labels", &labels, "-o", "out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("no plane joins them"), "{}", stderr(&output));
+}

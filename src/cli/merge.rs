@@ -125,7 +125,9 @@ fn lift_shared(parts: &mut [Part], source: &SuperpixelSource, session: &Session)
         let options = SuperpixelOptions { count: JOINING_SUPERPIXELS, by_keypoints: false };
         part.superpixels = given(lift_superpixels_of(&part.sfm, &is_shared, source, &options, &|_, _| ()))?;
     }
-    if parts.iter().all(|part| part.superpixels.is_none()) {
+    // Where no photograph is shared, labels and photographs are for the city.
+    let any_is_shared = parts_with.values().any(|count| *count > 1);
+    if any_is_shared && parts.iter().all(|part| part.superpixels.is_none()) {
         let folder = source.folder().display();
         let text =
             format!("no file there is that of a photograph that two parts share, so no plane joins them: {folder}");

@@ -9,21 +9,21 @@ use cityweld::city::{CityOptions, read_city};
 use cityweld::export::{CityCounts, InputSummary, SfmCounts, write_alignment};
 use cityweld::format::read_start;
 use cityweld::imagery::{SuperpixelOptions, SuperpixelSource, lift_superpixels};
+use cityweld::planes::PreparedCity;
 use cityweld::reconstruction::read_reconstruction;
-use cityweld::{AlignOptions, Up, align};
+use cityweld::{AlignOptions, align};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
 
     // What is known: the city, the reconstruction, which pixels belong together, and roughly where all of it stands.
-    let city = read_city(&sample.join("city.obj"), &[], &CityOptions::default())?;
+    let city = PreparedCity::new(read_city(&sample.join("city.obj"), &[], &CityOptions::default())?);
     let sfm = read_reconstruction(&sample.join("sfm"))?;
     let labels = SuperpixelSource::Labels(sample.join("labels"));
     let superpixels = lift_superpixels(&sfm, &labels, &SuperpixelOptions::default(), &|_, _| ())?;
     let start = read_start(&sample.join("start.json"))?;
 
-    let options = AlignOptions { start, fixed_scale: None, up: Up::Auto, seed: 0 };
-    let alignment = align(&city, &sfm, Some(&superpixels), &options, &|_, _, _| ());
+    let alignment = align(&city, &sfm, Some(&superpixels), &AlignOptions::new(start), &|_, _, _| ());
     println!("{}: {}", alignment.verdict.word(), alignment.reason);
 
     // The similarity maps the reconstruction to absolute city coordinates.
@@ -37,10 +37,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let out = tempfile::tempdir()?;
     let input = InputSummary {
-        city: CityCounts::of(&city, vec!["city.obj".into()]),
+        city: CityCounts::of(&city.model, vec!["city.obj".into()]),
         sfm: SfmCounts::of(&sfm, "sfm".into(), Some(superpixels.superpixels.len())),
     };
-    let files = write_alignment(out.path(), &alignment, &input, &city, &sfm)?;
+    let files = write_alignment(out.path(), &alignment, &input, &city.model, &sfm)?;
     println!("written: {}", files.join(", "));
     Ok(())
 }

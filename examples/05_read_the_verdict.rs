@@ -7,20 +7,21 @@ use std::path::Path;
 
 use cityweld::city::{CityModel, CityOptions, read_city};
 use cityweld::format::read_start;
+use cityweld::planes::PreparedCity;
 use cityweld::reconstruction::read_reconstruction;
 use cityweld::verdict::{Alignment, Verdict};
-use cityweld::{AlignOptions, Up, align};
+use cityweld::{AlignOptions, align};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
     let city = read_city(&sample.join("city.obj"), &[], &CityOptions::default())?;
     let sfm = read_reconstruction(&sample.join("sfm"))?;
     let start = read_start(&sample.join("start.json"))?;
-    let options = AlignOptions { start, fixed_scale: None, up: Up::Auto, seed: 0 };
+    let options = AlignOptions::new(start);
 
-    for (name, city) in [("the whole city", city.clone()), ("its walls alone", walls_of(city))] {
+    for (name, city) in [("its walls alone", walls_of(&city)), ("the whole city", city)] {
         println!("{name}:");
-        tell(&align(&city, &sfm, None, &options, &|_, _, _| ()));
+        tell(&align(&PreparedCity::new(city), &sfm, None, &options, &|_, _, _| ()));
     }
     Ok(())
 }
@@ -47,7 +48,6 @@ fn tell(alignment: &Alignment) {
 }
 
 /// Roofs and floors taken away: nothing is left that holds the height.
-fn walls_of(mut city: CityModel) -> CityModel {
-    city.facets.retain(|facet| facet.plane.normal.z.abs() < 0.05);
-    city
+fn walls_of(city: &CityModel) -> CityModel {
+    city.subset(|facet| city.facets[facet.0 as usize].plane.normal.z.abs() < 0.05)
 }

@@ -4,6 +4,7 @@
 //! (`ARCHITECTURE.md` says why, `tests/layering.rs` holds the list).
 #![forbid(unsafe_code)]
 
+pub mod limits;
 pub mod geometry;
 pub mod format;
 pub mod city;

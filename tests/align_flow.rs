@@ -1,7 +1,8 @@
 //! The whole alignment on a small made-up block: houses, ground, a cloud with noise and clutter, a start that is off.
 
 use cityweld::city::{CityModel, CityOptions, read_city};
-use cityweld::geometry::{Point3, Rotation3, Similarity, Start, Vector3};
+use cityweld::geometry::{Point3, Rotation3, Similarity, Start, StartSigmas, Vector3};
+use cityweld::planes::PreparedCity;
 use cityweld::reconstruction::Reconstruction;
 use cityweld::robust::Random;
 use cityweld::verdict::{Alignment, Verdict};
@@ -91,16 +92,11 @@ fn options(seed: u64) -> AlignOptions {
     let middle = Point3::new(12.0, 16.0, 3.0);
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 8f64.to_radians());
     let off = Similarity::about(&middle, &(middle + Vector3::new(5.0, -5.0, 1.5)), 1.12, turn);
-    AlignOptions {
-        start: Start::with_default_sigmas(off * sfm_from_city().inverse()),
-        fixed_scale: None,
-        up: Up::Auto,
-        seed,
-    }
+    AlignOptions { seed, ..AlignOptions::new(Start::with_default_sigmas(off * sfm_from_city().inverse())) }
 }
 
 fn run(with_ground: bool, options: &AlignOptions) -> Alignment {
-    align(&city(with_ground), &cloud(with_ground), None, options, &|_, _, _| ())
+    align(&PreparedCity::new(city(with_ground)), &cloud(with_ground), None, options, &|_, _, _| ())
 }
 
 /// Largest error over the block's corners, horizontally and along up.
@@ -143,8 +139,9 @@ fn leaning(options: &AlignOptions) -> AlignOptions {
     let mut leaning = AlignOptions { up: Up::None, ..*options };
     let middle = Point3::new(12.0, 16.0, 3.0);
     let lean = Rotation3::from_euler_angles(0.25, -0.17, 0.0);
-    leaning.start.city_from_sfm = Similarity::about(&middle, &middle, 1.0, lean) * options.start.city_from_sfm;
-    leaning.start.tilt_sigma_rad = 10f64.to_radians();
+    let leans = Similarity::about(&middle, &middle, 1.0, lean) * *options.start.city_from_sfm();
+    let sigmas = StartSigmas { tilt_rad: 10f64.to_radians(), ..StartSigmas::default() };
+    leaning.start = Start::new(leans, sigmas).unwrap();
     leaning
 }
 
@@ -172,7 +169,7 @@ fn the_result_names_the_configuration_that_searched() {
 fn a_single_wall_feeds_no_search_that_turns_freely() {
     let wall = Reconstruction { points: cloud(false).points[..150].to_vec(), ..Reconstruction::default() };
     let free = AlignOptions { up: Up::None, ..options(0) };
-    let alignment = align(&city(true), &wall, None, &free, &|_, _, _| ());
+    let alignment = align(&PreparedCity::new(city(true)), &wall, None, &free, &|_, _, _| ());
     assert_eq!((alignment.verdict, alignment.search.solver.as_str()), (Verdict::Failed, "none"));
     assert_eq!(alignment.search.samples, 0);
 }
@@ -180,7 +177,9 @@ fn a_single_wall_feeds_no_search_that_turns_freely() {
 #[test]
 fn says_failed_where_the_city_is_another() {
     let mut elsewhere = options(0);
-    elsewhere.start.city_from_sfm.translation += Vector3::new(45.0, 40.0, 0.0);
+    let mut off = *elsewhere.start.city_from_sfm();
+    off.translation += Vector3::new(45.0, 40.0, 0.0);
+    elsewhere.start = elsewhere.start.about(off);
     let alignment = run(true, &elsewhere);
     assert_ne!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
 }

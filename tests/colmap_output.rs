@@ -61,7 +61,7 @@ fn pycolmap_opens_the_moved_model_and_projects_as_before() {
     }
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
     let reconstruction = read_reconstruction(&sample.join("sfm")).unwrap();
-    let city_from_sfm = read_start(&sample.join("start.json")).unwrap().city_from_sfm;
+    let city_from_sfm = *read_start(&sample.join("start.json")).unwrap().city_from_sfm();
     let room = tempfile::tempdir().unwrap();
     write_colmap(room.path(), &reconstruction.transformed(&city_from_sfm)).unwrap();
 

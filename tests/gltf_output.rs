@@ -60,7 +60,7 @@ fn the_scene_of_the_sample_is_valid() {
     }
     let city = sample_city();
     let mut reconstruction = read_reconstruction(&sample("sfm")).unwrap();
-    let city_from_sfm = read_start(&sample("start.json")).unwrap().city_from_sfm;
+    let city_from_sfm = *read_start(&sample("start.json")).unwrap().city_from_sfm();
     let room = tempfile::tempdir().unwrap();
     let path = room.path().join("scene.glb");
     let write = |reconstruction: &Reconstruction| {

@@ -236,7 +236,7 @@ fn anchor(world_from_part: Similarity, verdict: Verdict) -> Anchor {
     Anchor {
         common_from_part: world_from_part,
         verdict,
-        chart: Chart { center: Point3::new(0.0, 0.0, 10.0), radius: 5.0 },
+        chart: Chart::of_similarity(Point3::new(0.0, 0.0, 10.0), 5.0),
         information: Matrix7::identity() * 400.0,
         reason: "in the city undetermined: along up".into(),
         freedoms: vec![along_up],

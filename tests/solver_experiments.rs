@@ -6,7 +6,7 @@ mod contact_sensor;
 mod figure4;
 
 use cityweld::geometry::{Point3, Similarity, Vector3};
-use cityweld::robust::{Chart, NormalEquations, tukey_weight};
+use cityweld::robust::{Chart, Motion, NormalEquations, tukey_weight};
 use cityweld::solvers::scene::{Chance, SIDE};
 use cityweld::solvers::{Row, Sought, refine};
 use figure4::{METHODS, Method, NOISE, Scene, mean_errors};
@@ -71,14 +71,12 @@ fn reweighted(rows: &[Row], start: &Similarity) -> Similarity {
         // 1.4826 makes a standard deviation of a median, and Tukey's width is 4.685 of these.
         let width = 4.685 * 1.4826 * sizes[sizes.len() / 2];
         let middle = images.iter().map(|x| x.coords).sum::<Vector3<f64>>() / images.len() as f64;
-        let chart = Chart { center: middle.into(), radius: SIDE };
+        let chart = Chart { center: middle.into(), radius: SIDE, motion: Motion::Rigid };
         let mut sums = NormalEquations::default();
         for ((row, image), residual) in rows.iter().zip(&images).zip(&residuals) {
-            let mut jacobian = chart.row(image, &row.normal);
-            jacobian[6] = 0.0;
-            sums.add(&jacobian, *residual, tukey_weight(residual * residual, width));
+            sums.add(&chart.row(image, &row.normal), *residual, tukey_weight(residual * residual, width));
         }
-        let step = sums.step(f64::INFINITY);
+        let step = chart.step(&sums, f64::INFINITY);
         pose = chart.moved(&pose, &step);
         if step.norm() < 1e-10 * SIDE {
             break;

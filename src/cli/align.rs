@@ -1,9 +1,10 @@
 //! `cityweld align`
 
 use anyhow::Result;
-use cityweld::city::{CityModel, read_city};
+use cityweld::city::read_city;
 use cityweld::export::{CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, write_alignment};
 use cityweld::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
+use cityweld::planes::PreparedCity;
 use cityweld::reconstruction::{Reconstruction, read_reconstruction};
 use cityweld::verdict::Verdict;
 
@@ -29,7 +30,7 @@ pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<
 
     voice.bar.show("writing", 0, 0);
     let summary = inputs.summary(plan);
-    let files = write_alignment(&output.path(), &alignment, &summary, &inputs.city, &inputs.sfm)?;
+    let files = write_alignment(&output.path(), &alignment, &summary, &inputs.city.model, &inputs.sfm)?;
     output.commit()?;
     voice.detail(&format!("{} written", plan.output.display()));
 
@@ -43,7 +44,7 @@ pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<
 }
 
 struct Inputs {
-    city: CityModel,
+    city: PreparedCity,
     sfm: Reconstruction,
     superpixels: Option<LiftedSuperpixels>,
 }
@@ -66,13 +67,13 @@ impl Inputs {
                 Some(lifted)
             }
         };
-        Ok(Inputs { city, sfm, superpixels })
+        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels })
     }
 
     /// What was tolerated while reading, once each.
     fn warnings(&self, plan: &AlignPlan) -> Vec<String> {
         let mut warnings = plan.warnings.clone();
-        warnings.extend(self.city.warnings.iter().map(ToString::to_string));
+        warnings.extend(self.city.model.warnings.iter().map(ToString::to_string));
         warnings.extend(self.sfm.warnings.iter().map(ToString::to_string));
         warnings.extend(self.superpixels.iter().flat_map(|lifted| &lifted.warnings).map(ToString::to_string));
         warnings
@@ -81,7 +82,7 @@ impl Inputs {
     fn summary(&self, plan: &AlignPlan) -> InputSummary {
         let superpixels = self.superpixels.as_ref().map(|lifted| lifted.superpixels.len());
         InputSummary {
-            city: CityCounts::of(&self.city, plan.city.names()),
+            city: CityCounts::of(&self.city.model, plan.city.names()),
             sfm: SfmCounts::of(&self.sfm, file_name(&plan.sfm), superpixels),
         }
     }

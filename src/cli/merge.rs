@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
-use cityweld::city::{CityModel, read_city};
+use cityweld::city::read_city;
 use cityweld::export::{OutputKind, merge_report, write_merge};
 use cityweld::format::read_start;
 use cityweld::imagery::{
@@ -13,7 +13,8 @@ use cityweld::imagery::{
 };
 use cityweld::merging::{Anchor, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
 use cityweld::reconstruction::{Image, read_reconstruction};
-use cityweld::{AlignOptions, Up};
+use cityweld::AlignOptions;
+use cityweld::planes::PreparedCity;
 
 use super::args::{EvidenceArg, MergeArgs};
 use super::plan::{CityFiles, keeps_inputs};
@@ -34,7 +35,7 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
     voice.detail(&format!("{}: {}", merged.verdict.word(), merged.reason));
 
     voice.bar.show("writing", 0, 0);
-    let files = write_merge(&output.path(), &merged, city.as_ref())?;
+    let files = write_merge(&output.path(), &merged, city.as_ref().map(|city| &city.model))?;
     output.commit()?;
     voice.warnings(&merged.warnings);
     tell(&merged, args, &files, session)?;
@@ -78,14 +79,14 @@ fn check(args: &MergeArgs) -> Result<()> {
     Ok(())
 }
 
-fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<CityModel>> {
+fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<PreparedCity>> {
     let Some(city) = &args.city else { return Ok(None) };
     session.voice.bar.show("reading the city", 0, 0);
     let files = CityFiles::new(city, &args.terrain, args.city_up)?;
-    Ok(Some(read_city(&files.city, &files.terrain, &files.options)?))
+    Ok(Some(PreparedCity::new(read_city(&files.city, &files.terrain, &files.options)?)))
 }
 
-fn read_parts(args: &MergeArgs, city: Option<&CityModel>, session: &Session) -> Result<Vec<Part>> {
+fn read_parts(args: &MergeArgs, city: Option<&PreparedCity>, session: &Session) -> Result<Vec<Part>> {
     let mut parts = Vec::new();
     for (index, (path, name)) in args.parts.iter().zip(unique_names(&args.parts)).enumerate() {
         session.voice.bar.show("reading the parts", index, args.parts.len());
@@ -148,7 +149,7 @@ fn anchor_all(
     parts: &mut [Part],
     source: Option<&SuperpixelSource>,
     args: &MergeArgs,
-    city: Option<&CityModel>,
+    city: Option<&PreparedCity>,
     session: &Session,
 ) -> Result<()> {
     let Some(city) = city else { return Ok(()) };
@@ -169,15 +170,14 @@ fn without_missing(mut lifted: LiftedSuperpixels) -> LiftedSuperpixels {
 fn anchor(
     part: &Part,
     superpixels: Option<&LiftedSuperpixels>,
-    city: &CityModel,
+    city: &PreparedCity,
     start: &Path,
     session: &Session,
 ) -> Result<Anchor> {
-    let options =
-        AlignOptions { start: read_start(start)?, fixed_scale: None, up: Up::Auto, seed: session.common.seed };
+    let options = AlignOptions { seed: session.common.seed, ..AlignOptions::new(read_start(start)?) };
     let progress = |stage, done, all| session.voice.bar.show(stage, done, all);
     let found = cityweld::align(city, &part.sfm, superpixels, &options, &progress);
-    let anchor = Anchor::of(&found, &part.sfm, options.start.city_from_sfm);
+    let anchor = Anchor::of(&found, &part.sfm, *options.start.city_from_sfm());
     session.voice.detail(&format!("{}: {}", part.name, anchor.reason));
     Ok(anchor)
 }

@@ -118,7 +118,8 @@ fn align_options(args: &AlignArgs, seed: u64) -> Result<AlignOptions> {
         UpArg::None => Up::None,
         UpArg::Given(up) => Up::Given(Vector3::from(up)),
     };
-    Ok(AlignOptions { start, fixed_scale: args.scale.map(|scale| scale.0), up, seed })
+    let fixed_scale = args.scale.map(|scale| scale.0);
+    Ok(AlignOptions { fixed_scale, up, seed, ..AlignOptions::new(start) })
 }
 
 fn superpixel_source(args: &AlignArgs, warnings: &mut Vec<String>) -> Result<Option<SuperpixelSource>> {

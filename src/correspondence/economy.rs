@@ -23,7 +23,7 @@ pub struct Prospect {
     pub fed: f64,
     /// Poses within the start's reach per draw.
     pub poses: f64,
-    /// Mean chance that a draw is right in all its pairs, if their patches lie on the city.
+    /// Mean chance that a draw is right in all its pairs.
     pub chance: f64,
 }
 
@@ -39,13 +39,10 @@ const PILOT_SEED: u64 = 0;
 /// 2026-11-25. Ratios matter.
 const PAIR_US: f64 = 5.0;
 const SCORE_US: f64 = 20.0;
-/// Patches that lie on the city: the others are trees, cars, and houses that the model lacks.
-const ON_CITY: f64 = 0.5;
-
 /// What a pilot tells of each search.
-pub fn prospects(searches: &[PoseSearch]) -> Vec<Prospect> {
+pub fn prospects(searches: &[PoseSearch], on_city: f64) -> Vec<Prospect> {
     let draws = searches.first().map_or(0, draws_of_pilot);
-    searches.iter().map(|search| Prospect::of(search, draws)).collect()
+    searches.iter().map(|search| Prospect::of(search, draws, on_city)).collect()
 }
 
 fn draws_of_pilot(search: &PoseSearch) -> u64 {
@@ -62,7 +59,7 @@ fn draws_of_pilot(search: &PoseSearch) -> u64 {
 }
 
 impl Prospect {
-    fn of(search: &PoseSearch, draws: u64) -> Prospect {
+    fn of(search: &PoseSearch, draws: u64, on_city: f64) -> Prospect {
         let (mut fed, mut found, mut chance) = (0, 0, 0.0);
         let mut poses = Vec::new();
         for draw in 0..draws {
@@ -78,16 +75,15 @@ impl Prospect {
             configuration: *search.configuration,
             fed: per_draw(fed as f64),
             poses: per_draw(found as f64),
-            chance: per_draw(chance),
+            chance: per_draw(chance) * on_city.powi(search.configuration.points_per_plane.len() as i32),
         }
     }
 
     /// Expected time until a sample is right, microseconds; `None` where the data feed none.
     pub fn expected_us(&self) -> Option<f64> {
         let planes = self.configuration.points_per_plane.len();
-        let right = self.chance * ON_CITY.powi(planes as i32);
         let cost = planes as f64 * PAIR_US + self.fed * self.configuration.solve_us + self.poses * SCORE_US;
-        (right > 0.0).then(|| cost / right)
+        (self.chance > 0.0).then(|| cost / self.chance)
     }
 }
 
@@ -142,6 +138,6 @@ mod tests {
     fn the_expected_cost_is_that_of_a_trial_over_the_chance_of_success() {
         let [four, ..] = prospects();
         let trial = 4.0 * PAIR_US + 0.5 * SIMILARITY[0].solve_us + 0.2 * SCORE_US;
-        assert!((four.expected_us().unwrap() - trial / (0.01 * ON_CITY.powi(4))).abs() < 1e-9);
+        assert!((four.expected_us().unwrap() - trial / 0.01).abs() < 1e-9);
     }
 }

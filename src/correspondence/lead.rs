@@ -11,7 +11,6 @@
 //! Assumptions  the points of one patch stand or fall together, patches of their own accord
 
 use super::scene::Scene;
-use super::scoring::Scorer;
 use crate::geometry::Similarity;
 
 /// Probes that vote; enough that every patch that weighs anything has its say.
@@ -21,10 +20,10 @@ const GATE_UNITS: f64 = 1.0;
 
 /// The net vote of each patch for a pose, shares of the whole vote: positive where its points lie on the city, negative where the
 /// city would stand between them and their cameras.
-pub(super) fn ballot(scene: &Scene, scorer: &Scorer, pose: &Similarity) -> Vec<f64> {
+pub(super) fn ballot(scene: &Scene, pose: &Similarity) -> Vec<f64> {
     let panel = scene.votes.panel(PANEL);
-    let explained = scorer.panel_votes(&panel, pose, GATE_UNITS * scene.unit_m);
-    let blocked = scene.sightlines.blocked(&scene.votes, &panel, pose);
+    let explained = scene.panel_votes(&panel, pose, GATE_UNITS * scene.unit_m);
+    let blocked = scene.blocked(&panel, pose);
     let mut by_patch = vec![0.0; scene.votes.patches.len()];
     for (i, (vote, is_blocked)) in panel.iter().zip(explained.into_iter().zip(blocked)) {
         let patch = scene.votes.patches.partition_point(|p| p.probes.end <= *i as usize);

@@ -1,30 +1,29 @@
 //! Which patch may lie on which plane of the city, and which poses follow: fields of facets, candidate pairs, the search and its
 //! refinement.
 
+mod belief;
+mod candidates;
 mod cliques;
-mod contenders;
 mod economy;
-mod field;
-mod hop;
 mod lead;
-mod pairing;
+mod prior;
 mod refine;
+mod sampler;
 mod scene;
 mod scoring;
 mod search;
 mod sight;
-mod slide;
+mod targets;
 mod votes;
+mod walk;
 
+pub use candidates::{Candidate, candidate_at, candidates, joined, settled};
 pub use cliques::{Cliques, Graph};
-pub use contenders::{Contender, Contest, contest, refiner};
 pub use economy::{Prospect, cheapest, prospects};
-pub use field::{FacetField, FieldTriangle, Hit, Probe};
-pub use pairing::{Pair, Pairing, Sample};
-pub use refine::{ErrorModel, ProbeOnPlane, Refined, Refiner};
+pub use prior::Prior;
+pub use refine::{ProbeOnPlane, Refined, Refiner};
+pub use sampler::{Pair, Sample, Sampler};
 pub use scene::Scene;
-pub use scoring::{Mover, Scorer};
-pub use search::{PoseSearch, largest_shift};
-pub use sight::Sightlines;
-pub use slide::slide;
+pub use search::{Hypotheses, NO_SOLVER, PoseSearch, largest_shift, search};
 pub use votes::{LevelPatch, Votes};
+pub use walk::{hop, slide};

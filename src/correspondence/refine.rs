@@ -11,20 +11,12 @@
 
 use rayon::prelude::*;
 
-use super::field::Hit;
-use super::scoring::{Mover, Scorer};
+use super::scene::Scene;
+use super::scoring::Mover;
+use super::walk::{Stride, walk};
 use crate::geometry::{Point3, Similarity};
-use crate::planes::{CityPlanes, PlaneId};
-use crate::robust::{Chart, NormalEquations, Vector7, tukey_weight};
-
-/// How the model errs.
-#[derive(Clone, Copy, Debug)]
-pub struct ErrorModel {
-    /// Noise of one point across its plane, metres.
-    pub point_sigma_m: f64,
-    /// Error of one plane of the model as a whole, metres.
-    pub plane_sigma_m: f64,
-}
+use crate::planes::Hit;
+use crate::robust::{Chart, Direction, Motion, NormalEquations, tukey_weight};
 
 /// A refined pose and what holds it.
 #[derive(Clone, Debug)]
@@ -37,38 +29,46 @@ pub struct Refined {
 
 /// Refines poses of one scene.
 pub struct Refiner<'a> {
-    pub scorer: &'a Scorer<'a>,
-    pub planes: &'a CityPlanes,
-    pub errors: ErrorModel,
-    /// True where the scale is given and must not be moved.
-    pub scale_is_fixed: bool,
+    pub scene: &'a Scene<'a>,
+    /// How poses may move.
+    pub motion: Motion,
+    /// Noise of one point across its plane, metres.
+    point_sigma_m: f64,
 }
 
-/// A point whose foot lies farther outside its facet than this share of the gate is not on it.
-const OUTSIDE_SHARE: f64 = 0.5;
-/// Directions held worse than this are not moved by least squares, metres.
-const HELD_M: f64 = 1.0;
-/// Loose points, of unknown direction, are taken for a facet's own only this close to it, in sigmas of a point ...
-const LOOSE_GATE_SIGMAS: f64 = 2.5;
-/// ... and count for this much of a patch's point, since many of them lie there by chance.
-const LOOSE_WEIGHT: f64 = 0.25;
 /// Probes per task.
 const CHUNK: usize = 512;
+/// Pairs settle within some steps.
+const SHARPENING_STEPS: usize = 5;
+/// A cloud smaller than this has no turn or scale to speak of.
+const SMALLEST_RADIUS_M: f64 = 1e-3;
+/// Makes a standard deviation of a median magnitude.
+const SIGMA_OF_MEDIAN: f64 = 1.4826;
 
 /// A probe on a facet.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbeOnPlane {
     /// Index into the votes' probes.
     pub probe: u32,
-    pub plane: PlaneId,
-    /// In the city.
+    /// In the city's local frame.
     pub place: Point3<f64>,
     pub hit: Hit,
     /// Tukey's weight of the residual.
     pub weight: f64,
 }
 
-impl Refiner<'_> {
+impl<'a> Refiner<'a> {
+    /// Moves poses as the scene's prior allows.
+    pub fn new(scene: &'a Scene<'a>) -> Refiner<'a> {
+        let point_sigma_m = scene.votes.noise_m.max(scene.limits.least_point_sigma_m);
+        Refiner { scene, motion: scene.prior.motion, point_sigma_m }
+    }
+
+    /// The same with the scale free, though it may be given.
+    pub fn with_free_scale(&self) -> Refiner<'a> {
+        Refiner { motion: Motion::Similarity, ..*self }
+    }
+
     /// Refines `pose` with the given gates (metres of the start), one step each, using the probes of `panel`.
     pub fn refine(&self, panel: &[u32], pose: &Similarity, gates_m: &[f64]) -> Refined {
         let mut pose = *pose;
@@ -78,7 +78,7 @@ impl Refiner<'_> {
             let chart = self.chart(&pose);
             let rows = self.probes_on_planes(panel, &pose, gate_m);
             let equations = self.equations(&chart, &rows);
-            pose = chart.moved(&pose, &equations.step(HELD_M));
+            pose = chart.moved(&pose, &chart.step(&equations, self.scene.limits.refinement.held_m));
             refined = Refined { city_from_level: pose, chart, equations };
         }
         refined
@@ -87,65 +87,60 @@ impl Refiner<'_> {
     /// Refines `pose` with a gate that follows the residuals: Tukey's width for their robust sigma, at most `gate_m` (metres of
     /// the start).
     pub fn sharpen(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Refined {
+        let limits = &self.scene.limits.refinement;
         let mut refined = self.refine(panel, pose, &[gate_m]);
         for _ in 0..SHARPENING_STEPS {
             let pose = refined.city_from_level;
             let rows = self.probes_on_planes(panel, &pose, gate_m);
-            let narrow_m = (TUKEY_SIGMAS * robust_sigma(&rows) / pose.scale).clamp(LEAST_GATE_SHARE * gate_m, gate_m);
+            let narrow_m = (limits.tukey_sigmas * robust_sigma(&rows) / pose.scale).clamp(limits.least_gate_share * gate_m, gate_m);
             refined = self.refine(panel, &pose, &[narrow_m]);
         }
         refined
     }
 
-    /// Slides `refined`, made without loose points, along what it leaves loose to where most planes find points, as far as `reach_m`, and sharpens with
-    /// all of `panel`.
+    /// Moves `refined`, made without loose points, along what it leaves loose to where most planes find points, as far as `reach_m`, and
+    /// sharpens with all of `panel`.
     ///
     /// The few points of a grazed roof that alone hold a height count for nothing among the votes of the walls; but by the
     /// root of its points every plane has a say, and at the right height several find theirs at once.
     pub fn settle(&self, panel: &[u32], refined: Refined, gate_m: f64, reach_m: f64) -> Refined {
-        let spectrum = refined.equations.spectrum();
         // A finer step than the gate of a loose point is wide: none may fall between.
-        let step_m = self.errors.point_sigma_m;
+        let step_m = self.point_sigma_m;
         let steps = (reach_m / step_m).ceil() as i32;
-        let support = |panel: &[u32], pose: &Similarity| -> f64 {
-            let rows = self.probes_on_planes(panel, pose, gate_m);
-            rows.chunk_by(|a, b| a.plane == b.plane).map(|p| p.iter().map(|r| r.weight).sum::<f64>().sqrt()).sum()
-        };
-        let start = refined.city_from_level;
-        let mut best = start;
-        let mut open: Vec<usize> = (0..7).filter(|&k| spectrum.sigmas_m[k] > HELD_M).collect();
-        open.sort_by(|&a, &b| spectrum.sigmas_m[b].total_cmp(&spectrum.sigmas_m[a]));
-        for k in open {
-            let direction = spectrum.directions.column(k).into_owned();
-            let free = self.without_bystanders(panel, &refined.chart, &best, &direction, gate_m);
-            let from = best;
-            let mut most = support(&free, &from);
-            for step in (-steps..=steps).filter(|s| *s != 0) {
-                let pose = refined.chart.moved(&from, &(direction * (f64::from(step) * step_m)));
-                let found = support(&free, &pose);
-                if found > most && self.scorer.within_reach(&pose) {
-                    (most, best) = (found, pose);
-                }
-            }
+        let spectrum = refined.chart.spectrum(&refined.equations.full());
+        let held_m = self.scene.limits.refinement.held_m;
+        let mut pose = refined.city_from_level;
+        for direction in spectrum.directions().iter().filter(|d| d.sigma_m > held_m) {
+            let free = self.without_unmoved(panel, &refined.chart, &pose, direction, gate_m);
+            let support = |pose: &Similarity| (self.support(&free, pose, gate_m), *pose);
+            let stride = Stride { direction: *direction, offsets_m: Stride::even(step_m, steps) };
+            pose = walk(&self.scene.prior, &refined.chart, support(&pose), &[stride], support).1;
         }
-        self.sharpen(panel, &best, gate_m)
+        self.sharpen(panel, &pose, gate_m)
     }
 
-    /// The panel without the loose points on planes that a motion along `direction` does not leave: they are explained already.
-    fn without_bystanders(
+    /// Points on planes, each plane counting by the root of its points.
+    fn support(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> f64 {
+        let rows = self.probes_on_planes(panel, pose, gate_m);
+        rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(|p| p.iter().map(|r| r.weight).sum::<f64>().sqrt()).sum()
+    }
+
+    /// The panel without the loose points on planes that a motion along `direction` does not leave: they are explained already, and
+    /// stray ones beside a wall would hold a roof that is not there.
+    fn without_unmoved(
         &self,
         panel: &[u32],
         chart: &Chart,
         pose: &Similarity,
-        direction: &Vector7,
+        direction: &Direction,
         gate_m: f64,
     ) -> Vec<u32> {
-        let mut stays = vec![false; self.scorer.votes.probes.len()];
+        let unmoved = self.scene.limits.walk.unmoved_share;
+        let mut stays = vec![false; self.scene.votes.probes.len()];
         for row in self.probes_on_planes(panel, pose, gate_m) {
-            let normal = &self.scorer.field.triangles[row.hit.triangle as usize].normal;
-            stays[row.probe as usize] = chart.row(&row.place, normal).dot(direction).abs() < BYSTANDER;
+            stays[row.probe as usize] = chart.row(&row.place, &row.hit.normal).dot(&direction.unit).abs() < unmoved;
         }
-        panel.iter().copied().filter(|&i| (i as usize) < self.scorer.votes.firm || !stays[i as usize]).collect()
+        panel.iter().copied().filter(|&i| (i as usize) < self.scene.votes.firm || !stays[i as usize]).collect()
     }
 
     /// The same pose with its information, nothing moved.
@@ -159,35 +154,29 @@ impl Refiner<'_> {
     pub fn probes_on_planes(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Vec<ProbeOnPlane> {
         let chunk = |panel: &[u32]| self.chunk_on_planes(panel, pose, gate_m * pose.scale);
         let mut rows = panel.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat();
-        rows.sort_by_key(|r| r.plane);
+        rows.sort_by_key(|r| r.hit.plane);
         rows
     }
 
     fn chunk_on_planes(&self, panel: &[u32], pose: &Similarity, firm_gate_m: f64) -> Vec<ProbeOnPlane> {
-        let Scorer { votes, field, .. } = self.scorer;
+        let (votes, limits) = (&self.scene.votes, &self.scene.limits.refinement);
         let mover = Mover::new(pose);
-        let loose_gate_m = firm_gate_m.min(LOOSE_GATE_SIGMAS * self.errors.point_sigma_m);
+        let loose_gate_m = firm_gate_m.min(limits.loose_gate_sigmas * self.point_sigma_m);
         let row = |&i: &u32| {
             let probe = mover.probe(&votes.probes[i as usize]);
             let is_firm = (i as usize) < votes.firm;
-            let (gate_m, trust) = if is_firm { (firm_gate_m, 1.0) } else { (loose_gate_m, LOOSE_WEIGHT) };
-            let hit = field.nearest(&probe, gate_m)?;
+            let (gate_m, trust) = if is_firm { (firm_gate_m, 1.0) } else { (loose_gate_m, limits.loose_weight) };
+            let hit = self.scene.nearest(&probe, gate_m)?;
             let weight = trust * tukey_weight(hit.across_m * hit.across_m, gate_m);
-            let plane = self.planes.of_facet(field.triangles[hit.triangle as usize].facet);
-            (hit.outside_m <= OUTSIDE_SHARE * gate_m && weight > 0.0).then_some(ProbeOnPlane {
-                probe: i,
-                plane,
-                place: probe.position,
-                hit,
-                weight,
-            })
+            let lies_on = hit.outside_m <= limits.outside_share * gate_m && weight > 0.0;
+            lies_on.then_some(ProbeOnPlane { probe: i, place: probe.position, hit, weight })
         };
         panel.iter().filter_map(row).collect()
     }
 
     fn equations(&self, chart: &Chart, rows: &[ProbeOnPlane]) -> NormalEquations {
         let mut sums = NormalEquations::default();
-        for of_plane in rows.chunk_by(|a, b| a.plane == b.plane) {
+        for of_plane in rows.chunk_by(|a, b| a.hit.plane == b.hit.plane) {
             sums.merge(&self.equations_of_plane(chart, of_plane), 1.0);
         }
         sums
@@ -198,23 +187,18 @@ impl Refiner<'_> {
         let mut plane = NormalEquations::default();
         let mut count = 0.0;
         for row in rows {
-            let normal = &self.scorer.field.triangles[row.hit.triangle as usize].normal;
-            let mut jacobian = chart.row(&row.place, normal);
-            if self.scale_is_fixed {
-                jacobian[6] = 0.0;
-            }
-            plane.add(&jacobian, row.hit.across_m, row.weight);
+            plane.add(&chart.row(&row.place, &row.hit.normal), row.hit.across_m, row.weight);
             count += row.weight;
         }
-        let variance = self.errors.point_sigma_m.powi(2) + count * self.errors.plane_sigma_m.powi(2);
+        let variance = self.point_sigma_m.powi(2) + count * self.scene.limits.plane_sigma_m.powi(2);
         let mut scaled = NormalEquations::default();
         scaled.merge(&plane, 1.0 / variance);
         scaled
     }
 
     fn chart(&self, pose: &Similarity) -> Chart {
-        let radius = (self.scorer.votes.radius_m * pose.scale).max(SMALLEST_RADIUS_M);
-        Chart { center: pose.apply(&Point3::origin()), radius }
+        let radius = (self.scene.votes.radius_m * pose.scale).max(SMALLEST_RADIUS_M);
+        Chart { center: pose.apply(&Point3::origin()), radius, motion: self.motion }
     }
 }
 
@@ -222,18 +206,5 @@ impl Refiner<'_> {
 fn robust_sigma(rows: &[ProbeOnPlane]) -> f64 {
     let mut across: Vec<f64> = rows.iter().map(|r| r.hit.across_m.abs()).collect();
     across.sort_by(f64::total_cmp);
-    1.4826 * across.get(across.len() / 2).copied().unwrap_or(0.0)
+    SIGMA_OF_MEDIAN * across.get(across.len() / 2).copied().unwrap_or(0.0)
 }
-
-/// Tukey's biweight of this width (in sigmas) is 95 % efficient on Gaussian noise.
-const TUKEY_SIGMAS: f64 = 4.685;
-/// The narrowest gate, as a share of the widest.
-const LEAST_GATE_SHARE: f64 = 0.2;
-/// Pairs settle within some steps.
-const SHARPENING_STEPS: usize = 5;
-
-/// A plane whose distance changes by less than this share of a motion is not left by it.
-const BYSTANDER: f64 = 0.3;
-
-/// A cloud smaller than this has no turn or scale to speak of.
-const SMALLEST_RADIUS_M: f64 = 1e-3;

@@ -1,28 +1,67 @@
 //! The robust search for poses: minimal samples over patch-plane pairs, scored on facets.
 
-use super::pairing::{Pair, Pairing, Sample};
-use super::scoring::Scorer;
+use super::economy::{cheapest, prospects};
+use super::sampler::{Pair, Sample, Sampler};
+use super::scene::Scene;
 use super::votes::LevelPatch;
 use crate::geometry::{Point3, Similarity, Vector3};
-use crate::robust::{Problem, Random};
-use crate::solvers::{Configuration, Row, Sought, solve_minimal};
+use crate::robust::{Motion, Problem, Random, Ranked, RansacOptions, ransac};
+use crate::solvers::{Configuration, Row, Sought, Up, solve_minimal};
+
+/// What a search found and how.
+#[derive(Clone, Debug)]
+pub struct Hypotheses {
+    /// Poses `city_from_level`, best first.
+    pub ranked: Vec<Ranked<Similarity>>,
+    /// Which configuration of the minimal family drew the samples, or [`NO_SOLVER`].
+    pub solver: String,
+    pub samples: usize,
+}
+
+/// What a result names where the data feed no solver.
+pub const NO_SOLVER: &str = "none";
+
+/// Searches a scene with the configuration that is expected to cost least; `progress` is told how many samples of how many.
+pub fn search(scene: &Scene, seed: u64, progress: &(dyn Fn(usize, usize) + Sync)) -> Hypotheses {
+    let limits = &scene.limits.search;
+    let (sampler, sought, panel) = (Sampler::new(scene), sought(scene), scene.votes.panel(limits.ranking_probes));
+    let with = |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, panel: &panel };
+    let searches: Vec<PoseSearch> = sought.configurations().iter().map(with).collect();
+    let Some(configuration) = cheapest(&prospects(&searches, limits.on_city)) else {
+        return Hypotheses { ranked: Vec::new(), solver: NO_SOLVER.to_owned(), samples: 0 };
+    };
+    let options = RansacOptions {
+        seed,
+        keep: limits.keep,
+        fewest_samples: limits.fewest_samples,
+        most_samples: limits.most_samples,
+        enough_hits: limits.enough_hits,
+    };
+    let (ranked, samples) = ransac(&with(&configuration), &options, |n| progress(n, options.most_samples));
+    Hypotheses { ranked, solver: format!("{} {configuration}", sought.name()), samples }
+}
+
+/// What is unknown of the pose in the level frame.
+fn sought(scene: &Scene) -> Sought {
+    let up = Up::new(&Vector3::z(), &Vector3::z()).filter(|_| scene.prior.up_is_known);
+    match (up, scene.prior.motion) {
+        (Some(up), Motion::Similarity) => Sought::UprightSimilarity(up),
+        (Some(up), Motion::Rigid) => Sought::UprightRigid(up),
+        (None, Motion::Similarity) => Sought::Similarity,
+        (None, Motion::Rigid) => Sought::Rigid,
+    }
+}
 
 /// The alignment as the robust loop sees it. Poses are `city_from_level`.
 pub struct PoseSearch<'a> {
-    pub pairing: &'a Pairing<'a>,
-    pub scorer: &'a Scorer<'a>,
-    pub sought: Sought,
+    scene: &'a Scene<'a>,
+    sampler: &'a Sampler<'a>,
+    sought: Sought,
     /// How many points the samples take from each pair, the first pair's first.
     pub configuration: &'a Configuration,
     /// Probes that rank hypotheses.
-    pub panel: &'a [u32],
-    /// Within this distance a vote counts for a hypothesis, metres of the start: a minimal sample extrapolates the noise of a few
-    /// patches over the whole scene.
-    pub gate_m: f64,
+    panel: &'a [u32],
 }
-
-/// Poses that move no corner of the scene by more than this are one place of the search: within the basin of refinement.
-const SAME_PLACE_M: f64 = 1.5;
 
 impl Problem for PoseSearch<'_> {
     type Pose = Similarity;
@@ -32,11 +71,12 @@ impl Problem for PoseSearch<'_> {
     }
 
     fn score(&self, pose: &Similarity) -> f64 {
-        self.scorer.panel_share(self.panel, pose, self.gate_m) - self.scorer.prior_cost(pose)
+        // Wide: a minimal sample extrapolates the noise of a few patches over the whole scene.
+        self.scene.score(self.panel, pose, self.scene.limits.search.gate_units * self.scene.unit_m)
     }
 
     fn same(&self, a: &Similarity, b: &Similarity) -> bool {
-        largest_shift(a, b, self.scorer.votes.radius_m) < SAME_PLACE_M
+        largest_shift(a, b, self.scene.votes.radius_m) < self.scene.limits.search.same_place_m
     }
 }
 
@@ -45,13 +85,11 @@ impl PoseSearch<'_> {
     /// its patches fit nothing or cannot give the points.
     pub fn sample(&self, random: &mut Random, poses: &mut Vec<Similarity>) -> Option<f64> {
         let points_per_plane = self.configuration.points_per_plane;
-        let sample = self.pairing.draw(points_per_plane.len(), random)?;
+        let sample = self.sampler.draw(points_per_plane.len(), random)?;
         let rows = self.rows(&sample)?;
         let solved = solve_minimal(&self.sought, points_per_plane, &rows);
-        let scaled =
-            solved.iter().map(|pose| Similarity { scale: self.pairing.scale().unwrap_or(pose.scale), ..*pose });
-        let right_way_up = |pose: &Similarity| self.faces_its_planes(&sample, pose);
-        poses.extend(scaled.filter(|pose| right_way_up(pose) && self.scorer.within_reach(pose)));
+        let right_way_up = |pose: &&Similarity| self.faces_its_planes(&sample, pose);
+        poses.extend(solved.iter().filter(right_way_up).filter(|pose| self.scene.prior.reaches(pose)));
         Some(sample.chance)
     }
 
@@ -62,9 +100,9 @@ impl PoseSearch<'_> {
         for (k, &points) in self.configuration.points_per_plane.iter().enumerate() {
             match sample.pairs.get(k) {
                 Some(pair) => {
-                    let patch = &self.scorer.votes.patches[pair.patch as usize];
+                    let patch = &self.scene.votes.patches[pair.patch as usize];
                     let places = places(patch, points, &self.across(sample, k));
-                    rows.extend(places[..points].iter().map(|place| self.row(place, pair)));
+                    rows.extend(places[..points].iter().map(|place| row(place, pair)));
                 }
                 None if points == 1 => rows.push(*completion.next()?),
                 None => return None,
@@ -73,15 +111,10 @@ impl PoseSearch<'_> {
         Some(rows)
     }
 
-    fn row(&self, place: &Vector3<f64>, pair: &Pair) -> Row {
-        let point = place * self.pairing.scale().unwrap_or(1.0);
-        Row { point, normal: pair.target.normal, offset: pair.target.offset }
-    }
-
     /// What two points of the pair's patch must stand across, to tell most: the direction that is known already. Known up holds
     /// its vertical; else a patch is turned about the normal of the pair before it.
     fn across(&self, sample: &Sample, k: usize) -> Vector3<f64> {
-        if self.pairing.up_is_known() {
+        if self.sampler.up_is_known() {
             return Vector3::z();
         }
         let count = sample.pairs.len();
@@ -94,6 +127,10 @@ impl PoseSearch<'_> {
         let mut pairs = sample.pairs.iter().take(wholes);
         pairs.all(|pair| (pose.rotation * pair.normal).dot(&pair.target.normal) > 0.0)
     }
+}
+
+fn row(place: &Vector3<f64>, pair: &Pair) -> Row {
+    Row { point: *place, normal: pair.target.normal, offset: pair.target.offset }
 }
 
 /// One, two or three points for a patch, as far apart as its own points are: its middle; a pair at right angles to `across`; a

@@ -8,44 +8,34 @@
 
 use rayon::prelude::*;
 
+use super::scene::Scene;
 use super::scoring::Mover;
-use super::votes::Votes;
-use crate::geometry::{Point3, RayCaster, Similarity};
+use crate::geometry::{Point3, Similarity};
 
-/// The facets near the scene as obstacles.
-pub struct Sightlines {
-    pub rays: RayCaster,
-}
-
-/// The point's own surroundings do not hide it: eaves, reveals and the model's error reach this far, metres.
-const SURROUNDINGS_M: f64 = 0.7;
-/// The camera's own place may be off the model's free space by this much, metres.
-const CAMERA_SLACK_M: f64 = 0.7;
 /// Probes per task.
 const CHUNK: usize = 128;
 
-impl Sightlines {
+impl Scene<'_> {
     /// For each probe of `panel` whether every line of sight to its cameras is blocked; probes without cameras are not.
-    pub fn blocked(&self, votes: &Votes, panel: &[u32], city_from_level: &Similarity) -> Vec<bool> {
+    pub fn blocked(&self, panel: &[u32], city_from_level: &Similarity) -> Vec<bool> {
+        let votes = &self.votes;
         let cameras: Vec<Point3<f64>> = votes.cameras.iter().map(|c| city_from_level.apply(c)).collect();
         let mover = Mover::new(city_from_level);
-        let chunk = |panel: &[u32]| -> Vec<bool> {
-            panel
-                .iter()
-                .map(|&i| {
-                    let place = mover.probe(&votes.probes[i as usize]).position;
-                    let mut viewers = votes.viewers[i as usize].iter().flatten().peekable();
-                    viewers.peek().is_some() && viewers.all(|&c| self.is_blocked(&place, &cameras[c as usize]))
-                })
-                .collect()
+        let is_blocked = |&i: &u32| {
+            let place = mover.probe(&votes.probes[i as usize]).position;
+            let mut viewers = votes.viewers[i as usize].iter().flatten().peekable();
+            viewers.peek().is_some() && viewers.all(|&c| self.hides(&place, &cameras[c as usize]))
         };
+        let chunk = |panel: &[u32]| -> Vec<bool> { panel.iter().map(is_blocked).collect() };
         panel.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat()
     }
 
-    fn is_blocked(&self, place: &Point3<f64>, camera: &Point3<f64>) -> bool {
+    /// Whether the city stands between a point and a camera.
+    fn hides(&self, place: &Point3<f64>, camera: &Point3<f64>) -> bool {
+        let limits = &self.limits.sight;
         let sight = camera - place;
-        let length = sight.norm() - SURROUNDINGS_M - CAMERA_SLACK_M;
+        let length = sight.norm() - limits.surroundings_m - limits.camera_slack_m;
         let Some(direction) = sight.try_normalize(0.0).filter(|_| length > 0.0) else { return false };
-        self.rays.first_hit(&(place + direction * SURROUNDINGS_M), &direction, length).is_some()
+        self.city.rays().first_hit(&(place + direction * limits.surroundings_m), &direction, length).is_some()
     }
 }

@@ -6,10 +6,10 @@
 //!              their points share one error; classes of direction count by the square root of their patches' sum, so that the
 //!              little ground that holds the height is not outvoted by the walls.
 
-use crate::geometry::{Point3, Rotation3, Similarity, Start, Vector3};
-use crate::planes::{Patches, Upright};
-
-use super::field::Probe;
+use super::prior::Extent;
+use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
+use crate::limits::Limits;
+use crate::planes::{Patches, Probe, Upright};
 
 /// A planar group in the level frame.
 #[derive(Clone, Debug)]
@@ -51,24 +51,13 @@ pub struct Votes {
     pub radius_m: f64,
 }
 
-/// Normals of a patch and its facet agree within this angle: patch normals are good to some degrees, walls of a block turn
-/// by more.
-const SAME_NORMAL_DEG: f64 = 25.0;
-/// A facet that is seen at a more grazing angle shows no points.
-const GRAZING_DEG: f64 = 83.0;
-/// Flat enough for a floor: a wall leans less than this from upright and a floor from level.
-const UPRIGHT_SIN: f64 = 0.2;
-/// A frame that leans by less than this still tells a floor, up to 37 degrees from its z, from the ceiling that it would be upside down.
-const TELLS_FLOORS_RAD: f64 = 0.8;
-
 impl Votes {
-    /// `start` maps the cloud to the city's local frame; `upright` tells its up.
-    pub fn new(patches: &Patches, start: &Start, upright: &Upright) -> Votes {
-        let city_from_sfm = &start.city_from_sfm;
+    /// `city_from_sfm` is where the start puts the cloud in the city's local frame; `upright` tells its up.
+    pub fn new(patches: &Patches, city_from_sfm: &Similarity, upright: &Upright, limits: &Limits) -> Votes {
         // The smallest turn that levels the cloud after the start's rotation.
         let up_in_city = city_from_sfm.rotation * upright.up;
-        let leveling = Rotation3::rotation_between(&up_in_city, &Vector3::z()).unwrap_or_else(Rotation3::identity);
-        let middle = middle_of(patches);
+        let leveling = Rotation3::rotation_between(&up_in_city, &Vector3::z()).unwrap_or_else(half_turn);
+        let middle = patches.middle();
         let rotation = leveling * city_from_sfm.rotation;
         let level_from_sfm = Similarity::about(&middle, &Point3::origin(), city_from_sfm.scale, rotation);
         let mut votes = Votes {
@@ -84,23 +73,23 @@ impl Votes {
             noise_m: patches.noise * city_from_sfm.scale,
             radius_m: 0.0,
         };
-        votes.take_patches(patches, 3.0 * upright.sigma_rad < TELLS_FLOORS_RAD);
+        votes.take_patches(patches, 3.0 * upright.sigma_rad < limits.tells_floors_rad, limits);
         votes.firm = votes.probes.len();
-        votes.weigh();
-        votes.take_loose_points(patches);
+        votes.weigh(limits);
+        votes.take_loose_points(patches, limits);
         votes.viewers = votes.point_of.iter().map(|&i| patches.viewers[i as usize]).collect();
         votes.radius_m = votes.horizontal_radius();
         votes
     }
 
     /// `floors_look_up`: whether z is near enough to up to tell the side of level patches.
-    fn take_patches(&mut self, patches: &Patches, floors_look_up: bool) {
+    fn take_patches(&mut self, patches: &Patches, floors_look_up: bool, limits: &Limits) {
         let to_level = self.level_from_sfm;
-        let min_cos = SAME_NORMAL_DEG.to_radians().cos();
+        let min_cos = limits.same_normal_deg.to_radians().cos();
         for patch in &patches.patches {
             let mut normal = to_level.rotation * patch.fit.plane.normal;
             // Nobody scans a floor from below: where no camera tells, level surfaces look up.
-            let level = floors_look_up && normal.z.abs() > 1.0 - UPRIGHT_SIN;
+            let level = floors_look_up && normal.z.abs() > 1.0 - limits.upright_sin;
             if !patch.sided && level && normal.z < 0.0 {
                 normal = -normal;
             }
@@ -125,11 +114,11 @@ impl Votes {
 
     /// Points outside all patches say nothing in a search; beside a nearly right pose those on small or grazed facets help to
     /// hold it, since a facet must at least face the cameras that saw the point.
-    fn take_loose_points(&mut self, patches: &Patches) {
+    fn take_loose_points(&mut self, patches: &Patches, limits: &Limits) {
         let to_level = self.level_from_sfm;
         let mut taken = vec![false; patches.points.len()];
         self.point_of.iter().for_each(|&i| taken[i as usize] = true);
-        let min_cos = GRAZING_DEG.to_radians().cos();
+        let min_cos = limits.grazing_deg.to_radians().cos();
         for (i, (point, view)) in patches.points.iter().zip(&patches.views).enumerate() {
             let Some(view) = view.try_normalize(0.0).filter(|_| !taken[i]) else { continue };
             let position = to_level.apply(point);
@@ -139,16 +128,16 @@ impl Votes {
         }
     }
 
-    fn weigh(&mut self) {
+    fn weigh(&mut self, limits: &Limits) {
         let mut classes = [0.0; CLASSES];
         for patch in &self.patches {
-            classes[class(&patch.normal)] += (patch.probes.len() as f64).sqrt();
+            classes[class(&patch.normal, limits.upright_sin)] += (patch.probes.len() as f64).sqrt();
         }
         let total: f64 = classes.iter().map(|c| c.sqrt()).sum();
         self.weights = vec![0.0; self.probes.len()];
         for patch in &mut self.patches {
             let size = patch.probes.len() as f64;
-            patch.weight = size.sqrt() / classes[class(&patch.normal)].sqrt() / total;
+            patch.weight = size.sqrt() / classes[class(&patch.normal, limits.upright_sin)].sqrt() / total;
             self.weights[patch.probes.clone()].fill(patch.weight / size);
         }
     }
@@ -157,6 +146,14 @@ impl Votes {
         let mut radii: Vec<f64> = self.probes[..self.firm].iter().map(|p| p.position.coords.xy().norm()).collect();
         radii.sort_by(f64::total_cmp);
         radii.get(radii.len() * 9 / 10).copied().unwrap_or(0.0)
+    }
+
+    /// How far the cloud reaches about its middle, stray points left out.
+    pub fn extent(&self) -> Extent {
+        let mut heights: Vec<f64> = self.probes[..self.firm].iter().map(|p| p.position.z).collect();
+        heights.sort_by(f64::total_cmp);
+        let at = |share: f64| heights.get((heights.len() as f64 * share) as usize).copied().unwrap_or(0.0);
+        Extent { radius_m: BEYOND_RADIUS * self.radius_m, bottom_m: at(0.002), top_m: at(0.998) }
     }
 
     /// `count` indices of probes, each drawn with its weight, evenly over the patches: every one of them counts alike.
@@ -173,26 +170,23 @@ impl Votes {
     }
 }
 
+/// Room for points beyond the nine tenths that the radius holds.
+const BEYOND_RADIUS: f64 = 1.2;
+
 const CLASSES: usize = 17;
 
 /// Class of direction: floors and ceilings; walls by eight azimuths; slopes by eight azimuths.
-fn class(normal: &Vector3<f64>) -> usize {
+fn class(normal: &Vector3<f64>, upright_sin: f64) -> usize {
     let azimuth = normal.y.atan2(normal.x) / std::f64::consts::TAU * 8.0;
     let octant = (azimuth.round() as i64).rem_euclid(8) as usize;
     match normal.z.abs() {
-        z if z > 1.0 - UPRIGHT_SIN => 0,
-        z if z < UPRIGHT_SIN => 1 + octant,
+        z if z > 1.0 - upright_sin => 0,
+        z if z < upright_sin => 1 + octant,
         _ => 9 + octant,
     }
 }
 
-/// The median of each coordinate over the patches' points.
-fn middle_of(patches: &Patches) -> Point3<f64> {
-    let middle = |k: usize| {
-        let mut values: Vec<f64> =
-            patches.patches.iter().flat_map(|p| &p.members).map(|&m| patches.points[m as usize][k]).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
-    };
-    Point3::new(middle(0), middle(1), middle(2))
+/// The turn that sets upright what stands on its head.
+fn half_turn() -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
 }

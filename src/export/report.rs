@@ -86,6 +86,8 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
             })
             .collect::<Result<_, serde_json::Error>>()?,
         origin: to_raw_value(&alignment.origin.as_slice())?,
+        center: to_raw_value(&alignment.center.coords.as_slice())?,
+        radius: alignment.radius,
         freedoms: alignment.freedoms.iter().map(freedom_json).collect::<Result<_, _>>()?,
         covariance: alignment.covariance.iter().map(to_raw_value).collect::<Result<_, _>>()?,
         support: SupportJson::of(&alignment.support),
@@ -111,6 +113,9 @@ struct AlignmentJson<'a> {
     best_candidate: Option<SimilarityJson>,
     alternatives: Vec<AlternativeJson<'a>>,
     origin: Box<RawValue>,
+    /// What `covariance` is about.
+    center: Box<RawValue>,
+    radius: f64,
     freedoms: Vec<Box<RawValue>>,
     covariance: Vec<Box<RawValue>>,
     support: SupportJson,
@@ -178,9 +183,11 @@ pub(super) fn freedom_json(freedom: &Freedom) -> Result<Box<RawValue>, serde_jso
         sigma: f64,
         unit: &'a str,
         determined: bool,
+        given: bool,
     }
-    let Freedom { name, direction, sigma, unit, determined } = freedom;
-    to_raw_value(&FreedomJson { name, direction: (*direction).into(), sigma: *sigma, unit, determined: *determined })
+    let Freedom { name, direction, sigma, unit, determined, given } = freedom;
+    let (direction, sigma) = ((*direction).into(), *sigma);
+    to_raw_value(&FreedomJson { name, direction, sigma, unit, determined: *determined, given: *given })
 }
 
 fn evidence_json(evidence: &PlaneEvidence) -> Result<Box<RawValue>, serde_json::Error> {
@@ -204,6 +211,8 @@ fn check_finite(alignment: &Alignment) -> Result<(), ReportError> {
         ("transform", alignment.best.iter().all(similarity)),
         ("alternatives", alignment.alternatives.iter().all(|a| a.weight.is_finite() && similarity(&a.city_from_sfm))),
         ("origin", alignment.origin.iter().all(|v| v.is_finite())),
+        ("center", alignment.center.iter().all(|v| v.is_finite())),
+        ("radius", alignment.radius.is_finite()),
         (
             "freedoms",
             alignment.freedoms.iter().all(|f| f.sigma.is_finite() && f.direction.iter().all(|v| v.is_finite())),
@@ -237,13 +246,15 @@ mod tests {
             best: (verdict != Verdict::Failed).then_some(best),
             alternatives: vec![Alternative { city_from_sfm: best, weight: 0.02, differs: "turned".into() }],
             origin: Vector3::new(90000.0, 435_000.0, 0.0),
-            center: Point3::origin(),
+            center: Point3::new(1.0, 2.0, 3.0),
+            radius: 12.5,
             freedoms: vec![Freedom {
                 name: "up".into(),
                 direction: Vector3::z(),
                 sigma: 0.04,
                 unit: "m",
                 determined: true,
+                given: false,
             }],
             covariance: [[1e-9; 7]; 7],
             support: Support { points: 9, trusted_points: 7, planes: 3, rms_m: 0.11, median_m: 0.06 },

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::geometry::{Matrix3, NotASimilarity, Similarity, Vector3};
+use crate::geometry::{Matrix3, NotASimilarity, Similarity, StartError, Vector3};
 
 /// The longest report of a large city has some megabytes; a file beyond this is another file given by mistake.
 const LARGEST_FILE_BYTES: u64 = 64 << 20;
@@ -25,8 +25,8 @@ pub enum PlacementError {
         path.display()
     )]
     NotASimilarity { what: &'static str, path: PathBuf, source: NotASimilarity },
-    #[error("{key} of the start is {value}; expected a number that is not negative: {}", path.display())]
-    Sigma { path: PathBuf, key: &'static str, value: f64 },
+    #[error("not a valid start: {source}: {}", path.display())]
+    Start { path: PathBuf, source: StartError },
     #[error(
         "the alignment has neither a transform nor a best_candidate, so nothing can be placed; write a transform \
          into it or align again: {}",

@@ -5,11 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::placement::{PlacementError, SimilarityRecord, read_json};
-use crate::geometry::Start;
-
-/// A sigma of zero says "exactly known". A search divides by it, so it is taken as this instead: far below what any
-/// reconstruction resolves. Metres, radians and log scale alike.
-const SMALLEST_SIGMA: f64 = 1e-4;
+use crate::geometry::{Start, StartSigmas};
 
 const EXPECTED: &str = "{\"scale\": s, \"rotation\": [[..],[..],[..]], \"translation\": [x, y, z]} and, where wanted, \
                         position_sigma, height_sigma, rotation_sigma_deg, tilt_sigma_deg, scale_sigma";
@@ -33,21 +29,16 @@ pub fn read_start(path: &Path) -> Result<Start, PlacementError> {
     let record: StartRecord = read_json(path, "start", EXPECTED)?;
     let similarity =
         SimilarityRecord { scale: record.scale, rotation: record.rotation, translation: record.translation };
-    let default = Start::with_default_sigmas(similarity.check("start", path)?);
-    let sigma = |key: &'static str, given: Option<f64>, unit: f64, default: f64| match given {
-        None => Ok(default),
-        Some(value) if value >= 0.0 => Ok((value * unit).max(SMALLEST_SIGMA)),
-        Some(value) => Err(PlacementError::Sigma { path: path.into(), key, value }),
-    };
+    let default = StartSigmas::default();
     let degree = 1f64.to_radians();
-    Ok(Start {
-        position_sigma_m: sigma("position_sigma", record.position_sigma, 1.0, default.position_sigma_m)?,
-        height_sigma_m: sigma("height_sigma", record.height_sigma, 1.0, default.height_sigma_m)?,
-        heading_sigma_rad: sigma("rotation_sigma_deg", record.rotation_sigma_deg, degree, default.heading_sigma_rad)?,
-        tilt_sigma_rad: sigma("tilt_sigma_deg", record.tilt_sigma_deg, degree, default.tilt_sigma_rad)?,
-        log_scale_sigma: sigma("scale_sigma", record.scale_sigma, 1.0, default.log_scale_sigma)?,
-        ..default
-    })
+    let sigmas = StartSigmas {
+        position_m: record.position_sigma.unwrap_or(default.position_m),
+        height_m: record.height_sigma.unwrap_or(default.height_m),
+        heading_rad: record.rotation_sigma_deg.map_or(default.heading_rad, |v| v * degree),
+        tilt_rad: record.tilt_sigma_deg.map_or(default.tilt_rad, |v| v * degree),
+        log_scale: record.scale_sigma.unwrap_or(default.log_scale),
+    };
+    Start::new(similarity.check("start", path)?, sigmas).map_err(|source| PlacementError::Start { path: path.into(), source })
 }
 
 #[cfg(test)]
@@ -70,9 +61,9 @@ mod tests {
     #[test]
     fn reads_a_start_row_by_row_with_default_sigmas() {
         let start = read(&format!(r#"{{"scale": 2, {TURN}}}"#)).unwrap();
-        let p = start.city_from_sfm.apply(&Point3::new(1.0, 0.0, 0.0));
+        let p = start.city_from_sfm().apply(&Point3::new(1.0, 0.0, 0.0));
         assert!((p.coords - Vector3::new(1.0, 4.0, 3.0)).norm() < 1e-12);
-        assert_eq!(start, Start::with_default_sigmas(start.city_from_sfm));
+        assert_eq!(start, Start::with_default_sigmas(*start.city_from_sfm()));
     }
 
     #[test]
@@ -81,10 +72,10 @@ mod tests {
             r#"{{"scale": 2, {TURN}, "position_sigma": 4.5, "rotation_sigma_deg": 180, "tilt_sigma_deg": 90, "scale_sigma": 0}}"#
         ))
         .unwrap();
-        assert_eq!(start.position_sigma_m, 4.5);
-        assert!(start.heading_is_unknown());
-        assert!((start.tilt_sigma_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-        assert_eq!(start.log_scale_sigma, SMALLEST_SIGMA);
+        assert_eq!(start.sigmas().position_m, 4.5);
+        assert_eq!(start.sigmas().heading_rad, std::f64::consts::PI);
+        assert!((start.sigmas().tilt_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert_eq!(start.sigmas().log_scale, 1e-4);
     }
 
     #[test]
@@ -109,7 +100,7 @@ mod tests {
             (r#"{"scale": 1, "rotation": [[1,0,0],[0,1,0],[0,0,-1]], "translation": [0,0,0]}"#.into(), "reflection"),
             (r#"{"scale": 1, "rotation": [[1,0,0],[0,1,0],[0,0,2]], "translation": [0,0,0]}"#.into(), "orthonormal"),
             (r#"{"scale": 1, "rotation": [[1,0,0],[0,1,0]], "translation": [0,0,0]}"#.into(), "invalid length 2"),
-            (format!(r#"{{"scale": 1, {TURN}, "height_sigma": -2}}"#), "height_sigma of the start is -2"),
+            (format!(r#"{{"scale": 1, {TURN}, "height_sigma": -2}}"#), "height_sigma is -2"),
             ("[]".into(), "not a valid start"),
             (String::new(), "EOF"),
         ] {

@@ -14,6 +14,6 @@ pub use camera::{Camera, CameraModel};
 pub use plane::Plane;
 pub use rays::{RayCaster, Sight};
 pub use similarity::{NotASimilarity, Similarity};
-pub use start::Start;
+pub use start::{Start, StartError, StartSigmas};
 
 pub use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};

@@ -43,7 +43,7 @@ pub(super) fn adjust(network: &Network<'_>, poses: &mut [Option<Similarity>]) ->
     let chart = |p: usize| {
         let (center, radius) = extent(&network.parts[p].sfm.points);
         let pose = poses[p].unwrap_or_else(Similarity::identity);
-        Chart { center: pose.apply(&center), radius: pose.scale * radius }
+        Chart::of_similarity(pose.apply(&center), pose.scale * radius)
     };
     let adjustment = Adjustment { network, ties, free, charts: (0..poses.len()).map(chart).collect() };
     adjustment.settle(poses);

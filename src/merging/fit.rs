@@ -281,7 +281,7 @@ fn agrees(camera: &CameraPair, pose: &Similarity, bend: f64) -> bool {
 
 fn chart_of(pairs: &[Pair], pose: &Similarity, radius: f64) -> Chart {
     let sum = pairs.iter().map(|p| pose.apply(&p.in_b).coords).sum::<Vector3<f64>>();
-    Chart { center: Point3::from(sum / pairs.len().max(1) as f64), radius }
+    Chart::of_similarity(Point3::from(sum / pairs.len().max(1) as f64), radius)
 }
 
 fn equations(terms: &Terms, pose: &Similarity, chart: &Chart) -> NormalEquations {
@@ -321,7 +321,7 @@ fn refine(terms: &Terms, start: &Similarity) -> Similarity {
     let mut pose = *start;
     for _ in 0..ROUNDS {
         let chart = chart_of(terms.pairs, &pose, terms.radius);
-        let step = equations(terms, &pose, &chart).step(terms.radius);
+        let step = chart.step(&equations(terms, &pose, &chart), terms.radius);
         pose = chart.moved(&pose, &step);
         if step.norm() < CONVERGED * terms.radius {
             break;

@@ -6,17 +6,15 @@ use super::adjust::Held;
 use super::cycles::TIE_FLOOR;
 use super::judge::DETERMINED;
 use crate::geometry::Vector3;
+use crate::limits::Limits;
 use crate::robust::Matrix7;
 use crate::verdict::{Freedom, Hold};
 
 /// In the city's frame: metres and directions by their names.
 pub(super) fn in_the_city(held: &Held) -> Vec<Freedom> {
-    crate::verdict::freedoms(&Hold {
-        chart: held.chart,
-        by_plane: vec![held.information],
-        start: Matrix7::zeros(),
-        scale_is_fixed: false,
-    })
+    let (by_plane, prior) = (vec![held.information], Matrix7::zeros());
+    let hold = Hold { chart: held.chart, by_plane, prior, given_scale: None };
+    crate::verdict::freedoms(&hold, &Limits::default().verdict)
 }
 
 /// In the frame of a part, which knows neither metres nor up; the loosest first. Sigmas hold what parts bend by, which no ties tell;
@@ -42,7 +40,7 @@ pub(super) fn in_a_parts_frame(held: &Held) -> Vec<Freedom> {
             ("turn", positive(&turn), (sigma(k) / radius).to_degrees(), "deg")
         };
         let determined = own(k) <= DETERMINED * radius;
-        Freedom { name: name.to_owned(), direction, sigma: sigma_in_unit, unit, determined }
+        Freedom { name: name.to_owned(), direction, sigma: sigma_in_unit, unit, determined, given: false }
     };
     order.into_iter().map(in_words).collect()
 }

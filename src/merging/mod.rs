@@ -80,7 +80,7 @@ impl Anchor {
     pub fn of(alignment: &Alignment, sfm: &Reconstruction, fallback: Similarity) -> Anchor {
         let common_from_part = alignment.best.unwrap_or(fallback);
         let radius = common_from_part.scale * sigma::extent(&sfm.points).1;
-        let chart = Chart { center: alignment.center, radius };
+        let chart = Chart::of_similarity(alignment.center, radius);
         // The report's covariance is in radians, metres and log scale.
         let lengths = Matrix7::from_diagonal(&[radius, radius, radius, 1.0, 1.0, 1.0, radius].into());
         let covariance = Matrix7::from_fn(|i, j| alignment.covariance[i][j]);

@@ -192,7 +192,7 @@ pub(super) fn chart_of(evidence: &PlaneEvidence, pose: &Similarity) -> Chart {
             count += 1.0;
         }
     }
-    Chart { center: Point3::from(sum / count.max(1.0)), radius: evidence.radius[0] }
+    Chart::of_similarity(Point3::from(sum / count.max(1.0)), evidence.radius[0])
 }
 
 pub(super) fn refine(evidence: &PlaneEvidence, start: &Similarity, bend: f64) -> Similarity {
@@ -201,7 +201,7 @@ pub(super) fn refine(evidence: &PlaneEvidence, start: &Similarity, bend: f64) ->
         let chart = chart_of(evidence, &pose);
         let mut sums = NormalEquations::default();
         add_planes(evidence, &pose, bend, &chart, 1.0, &mut sums);
-        let step = sums.step(chart.radius);
+        let step = chart.step(&sums, chart.radius);
         pose = chart.moved(&pose, &step);
         if step.norm() < CONVERGED * chart.radius {
             break;

@@ -6,10 +6,10 @@
 //! Assumptions  most facets are wound with their outward side out (98.6 % and more in the models at hand)
 //! Why          party walls, inner walls and ground under houses stand close to the truth and make wrong poses fit
 
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::city::CityModel;
-use crate::geometry::{Point3, RayCaster, Vector3};
+use super::prepared_city::PreparedCity;
+use crate::geometry::{Point3, Vector3};
 
 /// Lines of sight start this far off the facet, beyond the mortar between the walls of two houses.
 const START_M: f64 = 0.06;
@@ -20,36 +20,45 @@ const REACH_M: f64 = 40.0;
 /// Larger triangles are looked at from three places.
 const LARGE_TRIANGLE_M2: f64 = 4.0;
 
-/// For each triangle of `city` whether it is exposed; those for which `ask` does not hold are not looked at (`false`). Besides, the
-/// triangles that were asked about as obstacles.
-pub fn exposed_triangles(city: &CityModel, ask: impl Fn(u32) -> bool + Sync) -> (Vec<bool>, RayCaster) {
-    let asked: Vec<u32> = (0..city.triangles.len() as u32).filter(|&t| ask(t)).collect();
-    let corners = |t: u32| city.triangles[t as usize].map(|v| city.vertices[v as usize]);
-    let mut facet_of = vec![0u32; city.triangles.len()];
-    for (f, facet) in city.facets.iter().enumerate() {
-        facet_of[facet.triangles.start as usize..facet.triangles.end as usize].fill(f as u32);
+/// For each triangle of a city whether it is exposed, found out when first asked.
+pub(super) struct Exposure(Vec<AtomicU8>);
+
+const UNKNOWN: u8 = 0;
+const HIDDEN: u8 = 1;
+const EXPOSED: u8 = 2;
+
+impl Exposure {
+    pub fn new(triangles: usize) -> Exposure {
+        Exposure((0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect())
     }
-    let normal = |t: u32| city.facets[facet_of[t as usize] as usize].plane.normal;
-    let rays = RayCaster::new(asked.iter().map(|&t| corners(t)));
-    let ends_in_the_open = |from: &Point3<f64>, direction: &Vector3<f64>| match rays.first_hit(from, direction, REACH_M)
-    {
-        None => true,
-        Some(sight) => sight.distance > NARROWEST_GAP_M && normal(asked[sight.triangle as usize]).dot(direction) < 0.0,
-    };
-    let is_exposed = |&t: &u32| {
-        let outward = normal(t);
-        let directions = fan(&outward);
-        places(&corners(t)).iter().any(|place| {
-            let from = place + START_M * outward;
-            most(directions.iter().map(|d| ends_in_the_open(&from, d)), directions.len())
-        })
-    };
-    let flags: Vec<bool> = asked.par_iter().map(is_exposed).collect();
-    let mut exposed = vec![false; city.triangles.len()];
-    for (&t, flag) in asked.iter().zip(flags) {
-        exposed[t as usize] = flag;
+
+    /// Two threads that ask at once find the same.
+    pub fn of(&self, triangle: u32, city: &PreparedCity) -> bool {
+        let known = &self.0[triangle as usize];
+        match known.load(Ordering::Relaxed) {
+            UNKNOWN => {
+                let exposed = is_exposed(triangle, city);
+                known.store(if exposed { EXPOSED } else { HIDDEN }, Ordering::Relaxed);
+                exposed
+            }
+            answer => answer == EXPOSED,
+        }
     }
-    (exposed, rays)
+}
+
+fn is_exposed(triangle: u32, city: &PreparedCity) -> bool {
+    let normal = |t: u32| city.model.facets[city.facet_of(t).0 as usize].plane.normal;
+    let ends_in_the_open =
+        |from: &Point3<f64>, direction: &Vector3<f64>| match city.rays().first_hit(from, direction, REACH_M) {
+            None => true,
+            Some(sight) => sight.distance > NARROWEST_GAP_M && normal(sight.triangle).dot(direction) < 0.0,
+        };
+    let outward = normal(triangle);
+    let directions = fan(&outward);
+    places(&city.corners(triangle)).iter().any(|place| {
+        let from = place + START_M * outward;
+        most(directions.iter().map(|d| ends_in_the_open(&from, d)), directions.len())
+    })
 }
 
 /// True where more than half of `count` answers are yes; asks no more of them than it must.

@@ -3,13 +3,16 @@
 mod city_planes;
 mod cloud;
 mod exposure;
+mod facet_grid;
 mod fit;
 mod patches;
+mod prepared_city;
 mod upright;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
 pub use cloud::{LocalSurface, local_surfaces};
-pub use exposure::exposed_triangles;
+pub use facet_grid::{FacetGrid, Hit, Probe};
 pub use fit::{FittedPlane, fit_plane, fit_plane_robustly};
+pub use prepared_city::PreparedCity;
 pub use patches::{Patch, PatchOptions, Patches, RejectedGroup, patches};
 pub use upright::{Upright, estimate_up};

@@ -59,6 +59,19 @@ pub struct Patches {
     pub not_planar: usize,
 }
 
+impl Patches {
+    /// The median of each coordinate over the patches' points.
+    pub fn middle(&self) -> Point3<f64> {
+        let middle = |k: usize| {
+            let members = self.patches.iter().flat_map(|p| &p.members);
+            let mut values: Vec<f64> = members.map(|&m| self.points[m as usize][k]).collect();
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).copied().unwrap_or(0.0)
+        };
+        Point3::new(middle(0), middle(1), middle(2))
+    }
+}
+
 /// How patches are made.
 #[derive(Clone, Copy, Debug)]
 pub struct PatchOptions {

@@ -1,8 +1,9 @@
-//! Normal equations of point-to-plane rows in the seven freedoms of a similarity, and steps only along what they hold.
+//! Normal equations of point-to-plane rows in the freedoms of a rigid motion or a similarity, and steps only along what
+//! they hold.
 //!
 //! Row          r = n . x + d for the image x of a point; the motion x -> x + rho (omega x y + tau + sigma y) with y = (x - c) / rho
 //!              changes it by rho J, J = (y x n, n, n . y); c the scene's centre and rho its radius, so that all seven
-//!              unknowns are lengths in metres (mathematics.md 10.1, equation 14)
+//!              unknowns are lengths in metres (mathematics.md 10.1, equation 14). A rigid motion has the first six.
 //! Method       information H = sum w J J^T, gradient g = sum w J r; the step is -H^+ g over the eigenvectors of H whose
 //!              sigma = 1 / sqrt(lambda) is below a limit: a direction that the data do not hold is not moved
 
@@ -13,12 +14,22 @@ use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
 pub type Matrix7 = SMatrix<f64, 7, 7>;
 pub type Vector7 = SVector<f64, 7>;
 
-/// Centre and radius that make the seven unknowns lengths.
+/// How a pose may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Rotation and translation; the scale is given.
+    Rigid,
+    /// Rotation, translation and scale.
+    Similarity,
+}
+
+/// The unknowns of a motion about a scene: its centre and radius, which make all of them lengths, and which of them there are.
 #[derive(Clone, Copy, Debug)]
 pub struct Chart {
     pub center: Point3<f64>,
     /// Metres.
     pub radius: f64,
+    pub motion: Motion,
 }
 
 /// Sums over rows.
@@ -28,16 +39,38 @@ pub struct NormalEquations {
     pub gradient: Vector7,
 }
 
-/// The directions of the seven unknowns that the data suggest, and how firmly each is held.
+/// One of the independent ways in which a pose may move.
+#[derive(Clone, Copy, Debug)]
+pub struct Direction {
+    /// Unit vector over (rotation, translation, log scale), each times the radius.
+    pub unit: Vector7,
+    /// Standard deviation along it, metres at the radius; infinite where nothing holds it.
+    pub sigma_m: f64,
+}
+
+/// The directions that the data suggest, the loosest first: six of a rigid motion, seven of a similarity.
 #[derive(Clone, Copy, Debug)]
 pub struct Spectrum {
-    /// Columns are unit vectors over (rotation, translation, log scale), each times the radius: metres.
-    pub directions: Matrix7,
-    /// Standard deviation along each, metres at the radius; infinite where nothing holds it.
-    pub sigmas_m: Vector7,
+    directions: [Direction; 7],
+    count: usize,
+}
+
+impl Motion {
+    /// How many numbers a motion has.
+    pub fn unknowns(self) -> usize {
+        match self {
+            Motion::Rigid => 6,
+            Motion::Similarity => 7,
+        }
+    }
 }
 
 impl Chart {
+    /// The unknowns of a similarity.
+    pub fn of_similarity(center: Point3<f64>, radius: f64) -> Chart {
+        Chart { center, radius, motion: Motion::Similarity }
+    }
+
     /// Derivative of the distance of a point `x` from a plane with normal `n`, per metre of each unknown.
     #[inline]
     pub fn row(&self, x: &Point3<f64>, n: &Vector3<f64>) -> Vector7 {
@@ -46,15 +79,66 @@ impl Chart {
         Vector7::from_column_slice(&[turn.x, turn.y, turn.z, n.x, n.y, n.z, n.dot(&y)])
     }
 
-    /// `pose` followed by the motion with these unknowns (metres).
+    /// `pose` followed by the motion with these unknowns (metres). A rigid motion leaves the scale as it is, to the bit.
     pub fn moved(&self, pose: &Similarity, unknowns: &Vector7) -> Similarity {
         let u = unknowns / self.radius;
         let rotation = Rotation3::new(Vector3::new(u[0], u[1], u[2]));
-        // Steps are small; the bound keeps a wild one from turning the scale over.
-        let scale = u[6].clamp(-0.5, 0.5).exp();
+        let scale = match self.motion {
+            Motion::Rigid => 1.0,
+            // Steps are small; the bound keeps a wild one from turning the scale over.
+            Motion::Similarity => u[6].clamp(-0.5, 0.5).exp(),
+        };
         let shift = Vector3::new(unknowns[3], unknowns[4], unknowns[5]);
-        let motion = Similarity::about(&self.center, &(self.center + shift), scale, rotation);
-        motion * *pose
+        Similarity::about(&self.center, &(self.center + shift), scale, rotation) * *pose
+    }
+
+    /// The unknowns of the motion that leads from one pose to another, to first order in the turn; metres.
+    pub fn between(&self, from: &Similarity, to: &Similarity) -> Vector7 {
+        let to_from = *to * from.inverse();
+        let turn = to_from.rotation.scaled_axis() * self.radius;
+        let shift = to_from.apply(&self.center) - self.center;
+        let log_scale = to_from.scale.ln() * self.radius;
+        Vector7::from_column_slice(&[turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, log_scale])
+    }
+
+    /// The directions of this information, 1 / m^2, as far as the motion has them.
+    pub fn spectrum(&self, information: &Matrix7) -> Spectrum {
+        match self.motion {
+            Motion::Rigid => {
+                let eigen = SymmetricEigen::new(information.fixed_view::<6, 6>(0, 0).into_owned());
+                Spectrum::new(eigen.eigenvalues.as_slice(), eigen.eigenvectors.as_slice())
+            }
+            Motion::Similarity => {
+                let eigen = SymmetricEigen::new(*information);
+                Spectrum::new(eigen.eigenvalues.as_slice(), eigen.eigenvectors.as_slice())
+            }
+        }
+    }
+
+    /// The Gauss-Newton step along the directions whose sigma is below `limit_m`.
+    pub fn step(&self, equations: &NormalEquations, limit_m: f64) -> Vector7 {
+        let spectrum = self.spectrum(&equations.full());
+        let held = spectrum.directions().iter().filter(|d| d.sigma_m < limit_m);
+        held.map(|d| d.unit * (-d.unit.dot(&equations.gradient) * d.sigma_m * d.sigma_m)).sum()
+    }
+}
+
+impl Spectrum {
+    /// `vectors` one behind the other, as long as there are values.
+    fn new(values: &[f64], vectors: &[f64]) -> Spectrum {
+        let nothing = Direction { unit: Vector7::zeros(), sigma_m: f64::INFINITY };
+        let mut spectrum = Spectrum { directions: [nothing; 7], count: values.len() };
+        for ((direction, &value), vector) in spectrum.directions.iter_mut().zip(values).zip(vectors.chunks(values.len())) {
+            direction.unit.as_mut_slice()[..vector.len()].copy_from_slice(vector);
+            direction.sigma_m = if value > 0.0 { value.sqrt().recip() } else { f64::INFINITY };
+        }
+        spectrum.directions[..values.len()].sort_by(|a, b| b.sigma_m.total_cmp(&a.sigma_m));
+        spectrum
+    }
+
+    /// The loosest first.
+    pub fn directions(&self) -> &[Direction] {
+        &self.directions[..self.count]
     }
 }
 
@@ -67,7 +151,7 @@ impl Default for NormalEquations {
 impl NormalEquations {
     #[inline]
     pub fn add(&mut self, row: &Vector7, residual_m: f64, weight: f64) {
-        // Only the lower triangle; `spectrum` and `step` mirror it.
+        // Only the lower triangle; `full` mirrors it.
         for i in 0..7 {
             let wi = weight * row[i];
             self.gradient[i] += wi * residual_m;
@@ -89,33 +173,14 @@ impl NormalEquations {
         full.fill_upper_triangle_with_lower_triangle();
         full
     }
-
-    pub fn spectrum(&self) -> Spectrum {
-        let eigen = SymmetricEigen::new(self.full());
-        let sigma = |lambda: f64| if lambda > 0.0 { lambda.sqrt().recip() } else { f64::INFINITY };
-        Spectrum { directions: eigen.eigenvectors, sigmas_m: eigen.eigenvalues.map(sigma) }
-    }
-
-    /// The Gauss-Newton step along the directions whose sigma is below `limit_m`.
-    pub fn step(&self, limit_m: f64) -> Vector7 {
-        let spectrum = self.spectrum();
-        let mut step = Vector7::zeros();
-        for k in 0..7 {
-            let sigma = spectrum.sigmas_m[k];
-            if sigma < limit_m {
-                let direction = spectrum.directions.column(k);
-                step -= direction * (direction.dot(&self.gradient) * sigma * sigma);
-            }
-        }
-        step
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const CHART: Chart = Chart { center: Point3::new(3.0, -2.0, 1.0), radius: 10.0 };
+    const CHART: Chart = Chart { center: Point3::new(3.0, -2.0, 1.0), radius: 10.0, motion: Motion::Similarity };
+    const RIGID: Chart = Chart { motion: Motion::Rigid, ..CHART };
 
     #[test]
     fn row_is_the_derivative_of_the_distance() {
@@ -131,15 +196,54 @@ mod tests {
     }
 
     #[test]
-    fn moves_only_what_is_held() {
+    fn the_motion_between_two_poses_leads_from_one_to_the_other() {
+        let from = Similarity { scale: 2.0, ..Similarity::identity() };
+        let unknowns = Vector7::from_column_slice(&[0.3, -0.1, 0.2, 1.0, 2.0, -0.5, 0.4]);
+        let found = CHART.between(&from, &CHART.moved(&from, &unknowns));
+        assert!((found - unknowns).norm() < 1e-12, "{found}");
+    }
+
+    /// Rows of a level plane.
+    fn of_a_floor() -> NormalEquations {
         let mut sums = NormalEquations::default();
-        let normal = Vector3::z();
         for (x, y) in [(0.0, 0.0), (5.0, 1.0), (-3.0, 4.0), (2.0, -6.0)] {
             let p = CHART.center + Vector3::new(x, y, 0.0);
-            sums.add(&CHART.row(&p, &normal), 0.5, 100.0);
+            sums.add(&CHART.row(&p, &Vector3::z()), 0.5, 100.0);
         }
-        let step = sums.step(1.0);
+        sums
+    }
+
+    #[test]
+    fn moves_only_what_is_held() {
+        let step = CHART.step(&of_a_floor(), 1.0);
         assert!((step[5] + 0.5).abs() < 1e-9, "{step}");
         assert!(step.iter().enumerate().all(|(k, v)| k == 5 || v.abs() < 1e-9), "{step}");
+    }
+
+    #[test]
+    fn a_rigid_motion_has_no_direction_of_scale_and_keeps_the_scale_to_the_bit() {
+        // Rows that would like another scale above all.
+        let mut sums = of_a_floor();
+        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+            for side in [4.0, -4.0] {
+                let place = CHART.center + axis * side;
+                sums.add(&RIGID.row(&place, &(axis * side.signum())), 0.4, 100.0);
+            }
+        }
+        let spectrum = RIGID.spectrum(&sums.full());
+        assert_eq!(spectrum.directions().len(), 6);
+        assert!(spectrum.directions().iter().all(|d| d.unit[6] == 0.0));
+        assert!(CHART.step(&sums, f64::INFINITY)[6].abs() > 0.1);
+        let pose = Similarity { scale: 0.1 + 0.2, ..Similarity::identity() };
+        let moved = RIGID.moved(&pose, &RIGID.step(&sums, f64::INFINITY));
+        assert_eq!(moved.scale.to_bits(), pose.scale.to_bits());
+    }
+
+    #[test]
+    fn the_loosest_direction_comes_first_and_what_nothing_holds_is_infinitely_loose() {
+        let spectrum = CHART.spectrum(&of_a_floor().full());
+        let sigmas: Vec<f64> = spectrum.directions().iter().map(|d| d.sigma_m).collect();
+        assert!(sigmas.is_sorted_by(|a, b| a >= b) && sigmas.len() == 7, "{sigmas:?}");
+        assert!(sigmas[0] > 1e3 && sigmas[6] < 0.1, "{sigmas:?}");
     }
 }

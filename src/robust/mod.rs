@@ -5,7 +5,7 @@ mod loss;
 mod random;
 mod ransac;
 
-pub use gauss_newton::{Chart, Matrix7, NormalEquations, Spectrum, Vector7};
+pub use gauss_newton::{Chart, Direction, Matrix7, Motion, NormalEquations, Spectrum, Vector7};
 pub use loss::{tukey_weight, vote};
 pub use random::Random;
 pub use ransac::{Problem, Ranked, RansacOptions, ransac};

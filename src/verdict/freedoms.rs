@@ -6,11 +6,10 @@
 //!              a limit. Its sigma includes the start, so that it is finite
 //! Source       mathematics of the normalised Jacobian: Gelfand et al. (3DIM 2003) for the slippable motions of a surface
 
-use nalgebra::SymmetricEigen;
-
 use super::{Freedom, words};
 use crate::geometry::Vector3;
-use crate::robust::{Chart, Matrix7, Vector7};
+use crate::limits::VerdictLimits;
+use crate::robust::{Chart, Matrix7, Motion, Vector7};
 
 /// What holds a pose.
 #[derive(Clone, Debug)]
@@ -18,66 +17,87 @@ pub struct Hold {
     pub chart: Chart,
     /// Information of each plane with points on it, 1 / m^2 in the chart's unknowns.
     pub by_plane: Vec<Matrix7>,
-    /// Information of the start.
-    pub start: Matrix7,
-    /// True where the scale is given: then it is no freedom.
-    pub scale_is_fixed: bool,
+    /// Information of what is known beforehand.
+    pub prior: Matrix7,
+    /// The scale, where it was given; then the chart's motion is rigid.
+    pub given_scale: Option<GivenScale>,
+}
+
+/// A scale that was given, beside that of the data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenScale {
+    /// Metres per sfm unit.
+    pub given: f64,
+    /// What the data say with the scale free, metres per sfm unit.
+    pub of_data: f64,
+    /// One sigma of the logarithm of that; infinite where the data do not hold it.
+    pub log_sigma: f64,
+    /// Balance of the pose with the scale free.
+    pub balance: f64,
 }
 
 /// A freedom in numbers.
 #[derive(Clone, Debug)]
-pub struct Direction {
+pub struct HeldDirection {
     /// Over (rotation, translation, log scale), each times the radius.
     pub unit: Vector7,
-    /// With the start, metres at the radius.
+    /// With what is known beforehand, metres at the radius.
     pub sigma_m: f64,
     pub determined: bool,
 }
 
-/// A freedom that the data hold worse than this is not determined, metres at the scene's radius: a shift of a window's width is what a
-/// user would see.
-const DETERMINED_M: f64 = 0.35;
+impl GivenScale {
+    /// Logarithm of the data's scale over the given one.
+    pub fn log_off(&self) -> f64 {
+        (self.of_data / self.given).ln()
+    }
+
+    /// Whether the data say another scale than the given one, for a scene of this radius.
+    pub fn is_contradicted(&self, radius_m: f64, limits: &VerdictLimits) -> bool {
+        let off = self.log_off().abs();
+        off > limits.scale_sigmas * self.log_sigma && off * radius_m > limits.scale_m
+    }
+}
 
 impl Hold {
-    /// The freedoms, the loosest first.
-    pub fn directions(&self) -> Vec<Direction> {
-        let data: Matrix7 = self.by_plane.iter().sum();
-        let eigen = SymmetricEigen::new(data);
-        let mut order: Vec<usize> = (0..7).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-        let direction = |k: usize| {
-            let unit: Vector7 = eigen.eigenvectors.column(k).into_owned();
-            let along = |m: &Matrix7| unit.dot(&(m * unit)).max(0.0);
-            let sum: f64 = self.by_plane.iter().map(along).sum();
-            let determined = sum * DETERMINED_M * DETERMINED_M >= 1.0;
-            Direction { unit, sigma_m: (sum + along(&self.start)).sqrt().recip(), determined }
+    /// The freedoms that are not given, the loosest first.
+    pub fn directions(&self, limits: &VerdictLimits) -> Vec<HeldDirection> {
+        let spectrum = self.chart.spectrum(&self.by_plane.iter().sum());
+        let direction = |d: &crate::robust::Direction| {
+            let along = |m: &Matrix7| d.unit.dot(&(m * d.unit)).max(0.0);
+            let of_data: f64 = self.by_plane.iter().map(along).sum();
+            HeldDirection {
+                unit: d.unit,
+                sigma_m: (of_data + along(&self.prior)).sqrt().recip(),
+                determined: of_data * limits.determined_m * limits.determined_m >= 1.0,
+            }
         };
-        let given = |d: &Direction| self.scale_is_fixed && d.unit[6].abs() > 0.9;
-        order.into_iter().map(direction).filter(|d| !given(d)).collect()
+        spectrum.directions().iter().map(direction).collect()
     }
 
     /// Covariance over (rotation vector about the centre, rad; translation of the centre, m; log scale).
+    /// A scale that is given has none.
     pub fn covariance(&self) -> [[f64; 7]; 7] {
-        let mut information: Matrix7 = self.by_plane.iter().sum::<Matrix7>() + self.start;
-        if self.scale_is_fixed {
-            information[(6, 6)] += FIXED_INFORMATION;
-        }
+        let information: Matrix7 = self.by_plane.iter().sum::<Matrix7>() + self.prior;
+        let covariance = match self.chart.motion {
+            Motion::Similarity => information.try_inverse().unwrap_or_else(Matrix7::zeros),
+            Motion::Rigid => {
+                let of_pose = information.fixed_view::<6, 6>(0, 0).into_owned().try_inverse();
+                of_pose.map_or_else(Matrix7::zeros, |inverse| inverse.fixed_resize(0.0))
+            }
+        };
         let r = self.chart.radius;
         let unit = Vector7::from_column_slice(&[1.0 / r, 1.0 / r, 1.0 / r, 1.0, 1.0, 1.0, 1.0 / r]);
-        let covariance = information.try_inverse().unwrap_or_else(Matrix7::zeros);
         std::array::from_fn(|i| {
             std::array::from_fn(|j| unit[i] * (covariance[(i, j)] + covariance[(j, i)]) / 2.0 * unit[j])
         })
     }
 }
 
-/// Stands for certainty, 1 / m^2.
-const FIXED_INFORMATION: f64 = 1e12;
-
-/// The freedoms in words, the loosest first.
-pub fn freedoms(hold: &Hold) -> Vec<Freedom> {
+/// The freedoms in words, the loosest first; a given scale stands at the end.
+pub fn freedoms(hold: &Hold, limits: &VerdictLimits) -> Vec<Freedom> {
     let r = hold.chart.radius;
-    let in_words = |d: Direction| {
+    let in_words = |d: HeldDirection| {
         let part = |first: usize| Vector3::new(d.unit[first], d.unit[first + 1], d.unit[first + 2]);
         let (turn, shift, scale) = (part(0), part(3), d.unit[6]);
         let largest = turn.norm().max(shift.norm()).max(scale.abs());
@@ -88,9 +108,17 @@ pub fn freedoms(hold: &Hold) -> Vec<Freedom> {
         } else {
             (words::turn(&turn), upward(&turn), (d.sigma_m / r).to_degrees(), "deg")
         };
-        Freedom { name, direction, sigma, unit, determined: d.determined }
+        Freedom { name, direction, sigma, unit, determined: d.determined, given: false }
     };
-    hold.directions().into_iter().map(in_words).collect()
+    let given = hold.given_scale.map(|scale| Freedom {
+        name: "scale".to_owned(),
+        direction: Vector3::zeros(),
+        sigma: 0.0,
+        unit: "1",
+        determined: !scale.is_contradicted(r, limits),
+        given: true,
+    });
+    hold.directions(limits).into_iter().map(in_words).chain(given).collect()
 }
 
 /// The unit vector along `v` that points up, or east where level.

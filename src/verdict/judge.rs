@@ -10,10 +10,10 @@
 //! A rival explains nearly as much where its balance comes near the best one's, or somewhat less near while so few patches tell the
 //! two apart that chance may have decided. Differences along freedoms that nothing holds do not count.
 
-use super::freedoms::{Direction, Hold};
+use super::freedoms::{GivenScale, HeldDirection, Hold};
 use super::{Alternative, Verdict, freedoms, words};
 use crate::geometry::Similarity;
-use crate::robust::Vector7;
+use crate::limits::VerdictLimits;
 
 /// A pose among others, with what speaks for it.
 #[derive(Clone, Debug)]
@@ -38,28 +38,23 @@ pub struct Ruling {
     pub alternatives: Vec<Alternative>,
 }
 
-/// Wrong poses of real blocks reached a balance of 0.30 where cameras speak against them, right ones of a scene of which
-/// the model knows less than half 0.39: the middle.
-const LEAST_BALANCE: f64 = 0.34;
-/// Without cameras nothing speaks against a pose but what it leaves unexplained: half of the vote must lie on the city.
-const LEAST_BALANCE_WITHOUT_CAMERAS: f64 = 0.50;
-/// A rival that reaches this share of the best balance is taken seriously.
-const RIVAL_SHARE: f64 = 0.85;
-/// A rival that reaches this share is taken seriously too where chance explains its lag. Chosen, not derived: with no such bar a
-/// building that stands alone, whose few walls cannot lead by much, was never sure against a rival of 61 %.
-const COMPARABLE_SHARE: f64 = 0.67;
-/// Chance explains a lag of fewer standard errors: a one-sided test at about 4 %. Leads do not part right poses from wrong ones: two
-/// wrong poses led their comparable rivals by 0.7 to 1.3, right ones in places not looked at before (nine comparisons) by 1.3 to 3.7.
-/// So the bar costs some right poses their word, for the sake of the wrong ones.
-const LEAST_LEAD_SIGMAS: f64 = 1.8;
-/// Poses that differ by less than this along what is held are one pose, metres at the scene's radius.
-const SAME_M: f64 = 0.8;
+/// Everything that a verdict reads.
+#[derive(Clone, Debug)]
+pub struct Evidence {
+    /// Sorted, best first.
+    pub rivals: Vec<Rival>,
+    /// What holds the best of them.
+    pub hold: Hold,
+    pub has_cameras: bool,
+}
+
 /// Rivals whose balance is below this share are not worth telling.
 const WORTH_TELLING: f64 = 0.25;
 
-/// Judges the best of `rivals` (sorted, best first) by the hold that the data have on it.
-pub fn judge(rivals: &[Rival], hold: &Hold, has_cameras: bool) -> Ruling {
-    let least = if has_cameras { LEAST_BALANCE } else { LEAST_BALANCE_WITHOUT_CAMERAS };
+/// Judges the best of the rivals by the hold that the data have on it.
+pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
+    let Evidence { rivals, hold, has_cameras } = evidence;
+    let least = if *has_cameras { limits.least_balance } else { limits.least_balance_without_cameras };
     let Some(best) = rivals.first() else {
         return Ruling {
             verdict: Verdict::Failed,
@@ -69,39 +64,38 @@ pub fn judge(rivals: &[Rival], hold: &Hold, has_cameras: bool) -> Ruling {
             alternatives: Vec::new(),
         };
     };
-    let directions = hold.directions();
-    let others: Vec<&Rival> = rivals[1..].iter().filter(|r| differs(best, r, hold, &directions)).collect();
+    let directions = hold.directions(limits);
+    let others: Vec<&Rival> = rivals[1..].iter().filter(|r| differs(best, r, hold, &directions, limits)).collect();
     let alternatives = alternatives(best, &others, hold);
-    let serious = others.iter().filter(|r| is_serious(r, best)).count();
-    let (verdict, reason) = if best.balance < least {
+    let serious = others.iter().filter(|r| is_serious(r, best, limits)).count();
+    let contradicted = hold.given_scale.filter(|scale| scale.is_contradicted(hold.chart.radius, limits));
+    let (verdict, reason) = if let Some(scale) = contradicted.filter(|scale| scale.balance >= least) {
+        (Verdict::Undetermined, contradicted_reason(&scale))
+    } else if best.balance < least {
         (Verdict::Failed, failed_reason(best, least))
     } else if serious > 0 {
         (Verdict::Ambiguous, ambiguous_reason(best, serious, &alternatives))
-    } else if let Some(reason) = undetermined_reason(hold) {
+    } else if let Some(reason) = undetermined_reason(hold, limits) {
         (Verdict::Undetermined, reason)
     } else {
-        (Verdict::Aligned, aligned_reason(best, others.first().copied(), hold))
+        (Verdict::Aligned, aligned_reason(best, others.first().copied(), hold, limits))
     };
     Ruling { verdict, reason, alternatives }
 }
 
-fn is_serious(rival: &Rival, best: &Rival) -> bool {
+fn is_serious(rival: &Rival, best: &Rival, limits: &VerdictLimits) -> bool {
     let share = rival.balance / best.balance;
-    share >= RIVAL_SHARE || share >= COMPARABLE_SHARE && rival.lead_sigmas < LEAST_LEAD_SIGMAS
+    share >= limits.rival_share
+        || share >= limits.comparable_share && rival.lead_sigmas < limits.least_lead_sigmas
 }
 
 /// True where two poses differ along what the data hold.
-fn differs(a: &Rival, b: &Rival, hold: &Hold, directions: &[Direction]) -> bool {
-    let b_from_a = b.city_from_sfm * a.city_from_sfm.inverse();
-    let r = hold.chart.radius;
-    let turn = b_from_a.rotation.scaled_axis() * r;
-    let shift = b_from_a.apply(&hold.chart.center) - hold.chart.center;
-    let scale = b_from_a.scale.ln() * r;
-    let mut motion = Vector7::from_column_slice(&[turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, scale]);
+fn differs(a: &Rival, b: &Rival, hold: &Hold, directions: &[HeldDirection], limits: &VerdictLimits) -> bool {
+    let mut motion = hold.chart.between(&a.city_from_sfm, &b.city_from_sfm);
     for d in directions.iter().filter(|d| !d.determined) {
         motion -= d.unit * d.unit.dot(&motion);
     }
-    motion.norm() > SAME_M
+    motion.norm() > limits.same_m
 }
 
 fn alternatives(best: &Rival, others: &[&Rival], hold: &Hold) -> Vec<Alternative> {
@@ -143,10 +137,27 @@ fn ambiguous_reason(best: &Rival, serious: usize, alternatives: &[Alternative]) 
     )
 }
 
-fn undetermined_reason(hold: &Hold) -> Option<String> {
-    let open: Vec<String> = freedoms(hold)
+fn contradicted_reason(scale: &GivenScale) -> String {
+    let percent_off = percent(scale.log_off().exp_m1());
+    format!(
+        "the data say {} metres per reconstruction unit, given was {} ({percent_off:+.1} %, one sigma is {:.2} %); leave the scale free \
+         or check what it was taken from",
+        significant(scale.of_data),
+        scale.given,
+        percent(scale.log_sigma)
+    )
+}
+
+/// A number with four digits that mean something.
+fn significant(value: f64) -> String {
+    let digits = 3.0 - value.abs().log10().floor();
+    format!("{value:.*}", digits.clamp(0.0, 12.0) as usize)
+}
+
+fn undetermined_reason(hold: &Hold, limits: &VerdictLimits) -> Option<String> {
+    let open: Vec<String> = freedoms(hold, limits)
         .into_iter()
-        .filter(|f| !f.determined)
+        .filter(|f| !f.determined && !f.given)
         .map(|f| {
             let (sigma, unit) = if f.unit == "1" { (percent(f.sigma), "%") } else { (f.sigma, f.unit) };
             format!("{} (sigma {sigma:.2} {unit}; {})", f.name, words::remedy(&f.name))
@@ -155,8 +166,8 @@ fn undetermined_reason(hold: &Hold) -> Option<String> {
     (!open.is_empty()).then(|| format!("the data do not fix the pose {}", open.join(", nor ")))
 }
 
-fn aligned_reason(best: &Rival, second: Option<&Rival>, hold: &Hold) -> String {
-    let loosest = freedoms(hold).into_iter().next();
+fn aligned_reason(best: &Rival, second: Option<&Rival>, hold: &Hold, limits: &VerdictLimits) -> String {
+    let loosest = freedoms(hold, limits).into_iter().find(|f| !f.given);
     let loosest = loosest.map_or(String::new(), |f| {
         let (sigma, unit) = if f.unit == "1" { (percent(f.sigma), "%") } else { (f.sigma, f.unit) };
         format!("; the loosest freedom, {}, is held to {sigma:.2} {unit}", f.name)
@@ -175,7 +186,8 @@ fn aligned_reason(best: &Rival, second: Option<&Rival>, hold: &Hold) -> String {
 mod tests {
     use super::*;
     use crate::geometry::{Point3, Vector3};
-    use crate::robust::{Chart, Matrix7};
+    use crate::limits::Limits;
+    use crate::robust::{Chart, Matrix7, Motion};
 
     fn rival(shift: [f64; 3], share: f64, blocked: f64) -> Rival {
         let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
@@ -189,31 +201,66 @@ mod tests {
             information[(k, k)] = 0.0;
         }
         Hold {
-            chart: Chart { center: Point3::origin(), radius: 20.0 },
+            chart: Chart::of_similarity(Point3::origin(), 20.0),
             by_plane: vec![information, information],
-            start: Matrix7::identity() * 0.01,
-            scale_is_fixed: false,
+            prior: Matrix7::identity() * 0.01,
+            given_scale: None,
+        }
+    }
+
+    fn ruling(rivals: &[Rival], hold: &Hold, has_cameras: bool) -> Ruling {
+        let evidence = Evidence { rivals: rivals.to_vec(), hold: hold.clone(), has_cameras };
+        judge(&evidence, &Limits::default().verdict)
+    }
+
+    /// The data say 2 % more than what was given, or as much.
+    fn with_given_scale(log_off: f64, log_sigma: f64) -> Hold {
+        let given_scale = GivenScale { given: 6.85, of_data: 6.85 * log_off.exp(), log_sigma, balance: 0.8 };
+        let mut hold = hold(None);
+        hold.chart.motion = Motion::Rigid;
+        Hold { given_scale: Some(given_scale), ..hold }
+    }
+
+    #[test]
+    fn a_given_scale_that_the_data_contradict_is_undetermined_and_both_are_told() {
+        let wrong = ruling(&[rival([0.0; 3], 0.3, 0.0)], &with_given_scale(-0.049, 0.002), true);
+        assert_eq!(wrong.verdict, Verdict::Undetermined);
+        assert!(wrong.reason.contains("the data say 6.522") && wrong.reason.contains("given was 6.85"), "{}", wrong.reason);
+    }
+
+    #[test]
+    fn a_given_scale_within_the_sigmas_of_the_data_or_of_the_model_is_aligned() {
+        for (off, sigma) in [(0.02, 0.01), (0.005, 0.0001), (0.05, f64::INFINITY)] {
+            let right = ruling(&[rival([0.0; 3], 0.8, 0.0)], &with_given_scale(off, sigma), true);
+            assert_eq!(right.verdict, Verdict::Aligned, "{}", right.reason);
         }
     }
 
     #[test]
+    fn a_given_scale_is_a_freedom_told_as_given_and_no_other_freedom_is_scale() {
+        let found = freedoms(&with_given_scale(0.0, 0.01), &Limits::default().verdict);
+        let scales: Vec<bool> = found.iter().filter(|f| f.name == "scale").map(|f| f.given).collect();
+        assert_eq!((found.len(), scales), (7, vec![true]));
+    }
+
+    #[test]
     fn is_aligned_when_all_is_held_and_nothing_rivals() {
-        let ruling = judge(&[rival([0.0; 3], 0.8, 0.02), rival([5.0, 0.0, 0.0], 0.3, 0.2)], &hold(None), true);
+        let ruling = ruling(&[rival([0.0; 3], 0.8, 0.02), rival([5.0, 0.0, 0.0], 0.3, 0.2)], &hold(None), true);
         assert_eq!(ruling.verdict, Verdict::Aligned, "{}", ruling.reason);
     }
 
     #[test]
     fn is_undetermined_along_up_when_only_walls_hold() {
-        let ruling = judge(&[rival([0.0; 3], 0.8, 0.0)], &hold(Some(5)), true);
+        let ruling = ruling(&[rival([0.0; 3], 0.8, 0.0)], &hold(Some(5)), true);
         assert_eq!(ruling.verdict, Verdict::Undetermined);
         assert!(ruling.reason.contains("along up") && ruling.reason.contains("--terrain"), "{}", ruling.reason);
     }
 
     #[test]
     fn a_shift_along_what_is_open_is_no_rival_and_any_other_is() {
-        let same = judge(&[rival([0.0; 3], 0.8, 0.0), rival([0.0, 0.0, 4.0], 0.79, 0.0)], &hold(Some(5)), true);
+        let same = ruling(&[rival([0.0; 3], 0.8, 0.0), rival([0.0, 0.0, 4.0], 0.79, 0.0)], &hold(Some(5)), true);
         assert_eq!(same.verdict, Verdict::Undetermined);
-        let other = judge(&[rival([0.0; 3], 0.8, 0.0), rival([4.0, 0.0, 0.0], 0.79, 0.0)], &hold(None), true);
+        let other = ruling(&[rival([0.0; 3], 0.8, 0.0), rival([4.0, 0.0, 0.0], 0.79, 0.0)], &hold(None), true);
         assert_eq!(other.verdict, Verdict::Ambiguous);
         assert_eq!(other.alternatives.len(), 1);
         assert!(other.alternatives[0].differs.contains("shifted by (4.00, 0.00, 0.00) m"));
@@ -223,7 +270,7 @@ mod tests {
     fn a_lead_that_chance_explains_is_ambiguous() {
         let verdict = |share: f64, lead_sigmas: f64| {
             let behind = Rival { lead_sigmas, ..rival([5.0, 0.0, 0.0], share, 0.0) };
-            judge(&[rival([0.0; 3], 0.8, 0.0), behind], &hold(None), true).verdict
+            ruling(&[rival([0.0; 3], 0.8, 0.0), behind], &hold(None), true).verdict
         };
         assert_eq!(verdict(0.6, 1.0), Verdict::Ambiguous);
         assert_eq!(verdict(0.6, 3.0), Verdict::Aligned);
@@ -232,14 +279,13 @@ mod tests {
 
     #[test]
     fn blocked_lines_of_sight_fail_a_pose_that_fits_walls() {
-        let ruling = judge(&[rival([0.0; 3], 0.42, 0.4)], &hold(None), true);
-        assert_eq!(ruling.verdict, Verdict::Failed);
-        assert_eq!(judge(&[], &hold(None), true).verdict, Verdict::Failed);
+        assert_eq!(ruling(&[rival([0.0; 3], 0.42, 0.4)], &hold(None), true).verdict, Verdict::Failed);
+        assert_eq!(ruling(&[], &hold(None), true).verdict, Verdict::Failed);
     }
 
     #[test]
     fn without_cameras_half_of_the_vote_must_lie_on_the_city() {
-        assert_eq!(judge(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), true).verdict, Verdict::Aligned);
-        assert_eq!(judge(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), false).verdict, Verdict::Failed);
+        assert_eq!(ruling(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), true).verdict, Verdict::Aligned);
+        assert_eq!(ruling(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), false).verdict, Verdict::Failed);
     }
 }

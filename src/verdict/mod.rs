@@ -5,8 +5,8 @@ mod freedoms;
 mod judge;
 mod words;
 
-pub use freedoms::{Hold, freedoms};
-pub use judge::{Rival, Ruling, judge};
+pub use freedoms::{GivenScale, Hold, freedoms};
+pub use judge::{Evidence, Rival, Ruling, judge};
 
 use crate::geometry::{Point3, Similarity, Vector3};
 
@@ -50,6 +50,8 @@ pub struct Alignment {
     pub origin: Vector3<f64>,
     /// Centre of the scene that the covariance is about, absolute city coordinates.
     pub center: Point3<f64>,
+    /// Radius of the scene, metres: where a sigma of a turn or of the scale is felt as that of a length.
+    pub radius: f64,
     pub freedoms: Vec<Freedom>,
     /// Rows and columns: rotation vector about `center` (rad), translation of `center` (m), log scale; city frame.
     pub covariance: [[f64; 7]; 7],
@@ -81,6 +83,8 @@ pub struct Freedom {
     /// "m", "deg" or "1" (log scale).
     pub unit: &'static str,
     pub determined: bool,
+    /// Told by the user, not by the data; then it is determined as long as the data do not contradict it.
+    pub given: bool,
 }
 
 /// How well the points lie on the city.

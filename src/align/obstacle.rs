@@ -1,0 +1,131 @@
+//! Why a search cannot find anything, said before it begins.
+
+use std::fmt;
+
+use crate::city::CityModel;
+use crate::correspondence::{Prior, Votes};
+use crate::geometry::{Point3, Start, Vector3};
+use crate::limits::Limits;
+use crate::planes::{Patches, PreparedCity, Upright};
+use crate::reconstruction::Reconstruction;
+use crate::robust::Motion;
+
+/// What stands in the way of any alignment.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Obstacle {
+    EmptyCity,
+    NoPoints { images: usize },
+    NoPatches { points: usize, noise_m: f64 },
+    FarFromTheCity { place: Point3<f64>, distance_m: f64, reach_m: f64, city: [Point3<f64>; 2] },
+}
+
+/// The first obstacle that is met; `start` maps to the city's local frame.
+pub(super) fn find(
+    city: &PreparedCity,
+    reconstruction: &Reconstruction,
+    patches: &Patches,
+    start: &Start,
+    limits: &Limits,
+) -> Option<Obstacle> {
+    let Some(bounds) = city.model.bounds().filter(|_| !city.model.triangles.is_empty()) else {
+        return Some(Obstacle::EmptyCity);
+    };
+    if reconstruction.points.is_empty() {
+        return Some(Obstacle::NoPoints { images: reconstruction.images.len() });
+    }
+    if patches.patches.is_empty() {
+        let noise_m = patches.noise * start.city_from_sfm().scale;
+        return Some(Obstacle::NoPatches { points: reconstruction.points.len(), noise_m });
+    }
+    far_off(&city.model, bounds, patches, start, limits)
+}
+
+/// A start from which no point can reach the city.
+fn far_off(
+    city: &CityModel,
+    (low, high): (Point3<f64>, Point3<f64>),
+    patches: &Patches,
+    start: &Start,
+    limits: &Limits,
+) -> Option<Obstacle> {
+    let up = start.city_from_sfm().rotation.inverse() * Vector3::z();
+    let upright = Upright { up, sigma_rad: start.sigmas().tilt_rad, known: false };
+    let votes = Votes::new(patches, start.city_from_sfm(), &upright, limits);
+    let place = votes.center_in_city;
+    // The sigmas as they were given: bounded by the city they always reach it.
+    let prior = Prior::new(start, place, Motion::Similarity, false, None, limits);
+    let reach = prior.reach(&votes.extent());
+    let apart = |k: usize| (low[k] - reach.high[k]).max(reach.low[k] - high[k]).max(0.0);
+    if (0..3).all(|k| apart(k) == 0.0) {
+        return None;
+    }
+    let beside = |k: usize| (low[k] - place[k]).max(place[k] - high[k]).max(0.0);
+    Some(Obstacle::FarFromTheCity {
+        place: place + city.origin,
+        distance_m: Vector3::new(beside(0), beside(1), beside(2)).norm(),
+        reach_m: (reach.high - place).norm(),
+        city: [low + city.origin, high + city.origin],
+    })
+}
+
+impl fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Obstacle::EmptyCity => write!(f, "the city model has no facets; give one with walls, roofs or ground"),
+            Obstacle::NoPoints { images: 0 } => {
+                write!(f, "the reconstruction has no points; give a cloud, or a COLMAP model with points3D")
+            }
+            Obstacle::NoPoints { images } => write!(
+                f,
+                "the reconstruction has no points, only {images} images; triangulate its points first (COLMAP: point_triangulator)"
+            ),
+            Obstacle::NoPatches { points, noise_m } => write!(
+                f,
+                "no planar patch among {points} points (their noise is {noise_m:.2} m at the start's scale); walls, roofs or ground \
+                 with eight points and more on each are needed"
+            ),
+            Obstacle::FarFromTheCity { place, distance_m, reach_m, city: [low, high] } => write!(
+                f,
+                "the start puts the reconstruction {} from the city (its middle at {:.0}, {:.0}, {:.0}; the city lies from {:.0}, {:.0}, \
+                 {:.0} to {:.0}, {:.0}, {:.0}), and its sigmas reach {} at most; check that start and city are in the same frame and unit",
+                length(*distance_m),
+                place.x,
+                place.y,
+                place.z,
+                low.x,
+                low.y,
+                low.z,
+                high.x,
+                high.y,
+                high.z,
+                length(*reach_m)
+            ),
+        }
+    }
+}
+
+/// Metres up to ten kilometres, then kilometres, thousands set apart.
+fn length(metres: f64) -> String {
+    if metres < 10_000.0 {
+        return format!("{metres:.0} m");
+    }
+    let digits = format!("{:.0}", metres / 1000.0);
+    let mut grouped = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped + " km"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_told_as_a_person_says_them() {
+        assert_eq!(["0 m", "9999 m", "12 km", "5,780 km"], [0.2, 9999.0, 12_345.0, 5.78e6].map(length));
+    }
+}

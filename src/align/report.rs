@@ -1,0 +1,110 @@
+//! What the stages found, put together as an [`Alignment`].
+
+use super::AlignOptions;
+use super::evidence::Gathered;
+use super::obstacle::Obstacle;
+use crate::correspondence::{Hypotheses, NO_SOLVER, ProbeOnPlane};
+use crate::geometry::Point3;
+use crate::planes::{Patches, PreparedCity};
+use crate::verdict::{Alignment, PlaneEvidence, Ruling, SearchSummary, Support, Verdict, freedoms};
+
+/// The alignment that a ruling makes of what was found.
+pub(super) fn tell(
+    ruling: Ruling,
+    found: Gathered,
+    hypotheses: &Hypotheses,
+    patches: &Patches,
+    city: &PreparedCity,
+    options: &AlignOptions,
+) -> Alignment {
+    let Gathered { evidence, rows, firm } = found;
+    let (rivals, hold) = (&evidence.rivals, &evidence.hold);
+    Alignment {
+        verdict: ruling.verdict,
+        reason: ruling.reason,
+        best: rivals.first().map(|r| r.city_from_sfm),
+        alternatives: ruling.alternatives,
+        origin: city.model.origin,
+        center: hold.chart.center,
+        radius: hold.chart.radius,
+        freedoms: if rivals.is_empty() { Vec::new() } else { freedoms(hold, &options.limits.verdict) },
+        covariance: hold.covariance(),
+        support: support(&rows, firm),
+        evidence: evidence_of_planes(&rows, city),
+        search: SearchSummary {
+            solver: hypotheses.solver.clone(),
+            samples: hypotheses.samples as u64,
+            seed: options.seed,
+        },
+        warnings: warnings(patches),
+    }
+}
+
+/// The alignment where there was nothing to search.
+pub(super) fn refused(obstacle: &Obstacle, city: &PreparedCity, patches: &Patches, options: &AlignOptions) -> Alignment {
+    Alignment {
+        verdict: Verdict::Failed,
+        reason: obstacle.to_string(),
+        best: None,
+        alternatives: Vec::new(),
+        origin: city.model.origin,
+        center: Point3::from(city.model.origin),
+        radius: 0.0,
+        freedoms: Vec::new(),
+        covariance: [[0.0; 7]; 7],
+        support: Support::default(),
+        evidence: Vec::new(),
+        search: SearchSummary { solver: NO_SOLVER.to_owned(), samples: 0, seed: options.seed },
+        warnings: warnings(patches),
+    }
+}
+
+fn support(rows: &[ProbeOnPlane], firm: usize) -> Support {
+    let mut across: Vec<f64> = rows.iter().map(|r| r.hit.across_m.abs()).collect();
+    across.sort_by(f64::total_cmp);
+    Support {
+        points: firm,
+        trusted_points: rows.len(),
+        planes: rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).count(),
+        rms_m: rms(&across),
+        median_m: across.get(across.len() / 2).copied().unwrap_or(0.0),
+    }
+}
+
+/// The planes by falling number of points.
+fn evidence_of_planes(rows: &[ProbeOnPlane], city: &PreparedCity) -> Vec<PlaneEvidence> {
+    let of_plane = |rows: &[ProbeOnPlane]| {
+        let plane = rows[0].hit.plane;
+        let across: Vec<f64> = rows.iter().map(|r| r.hit.across_m).collect();
+        let object = city.planes().planes[plane.0 as usize].object;
+        let object = city.model.object_name(object).to_owned();
+        PlaneEvidence { plane: plane.0, object, points: rows.len(), rms_m: rms(&across) }
+    };
+    let mut evidence: Vec<PlaneEvidence> =
+        rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(of_plane).collect();
+    evidence.sort_by(|a, b| b.points.cmp(&a.points).then(a.plane.cmp(&b.plane)));
+    evidence
+}
+
+fn warnings(patches: &Patches) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let Patches { too_few_points, not_planar, cameras, .. } = patches;
+    if *too_few_points + *not_planar > 0 {
+        warnings.push(format!(
+            "superpixels without a plane: {too_few_points} with too few points, {not_planar} not planar"
+        ));
+    }
+    if cameras.is_empty() {
+        warnings.push(
+            "the reconstruction has no cameras: nothing tells from which side a surface was seen, nor speaks against a pose but the \
+             points that it leaves unexplained"
+                .to_owned(),
+        );
+    }
+    warnings
+}
+
+fn rms(values: &[f64]) -> f64 {
+    // An empty sum is -0.
+    (values.iter().map(|v| v * v).sum::<f64>().abs() / values.len().max(1) as f64).sqrt()
+}

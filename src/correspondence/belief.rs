@@ -1,0 +1,234 @@
+//! What is known of scale and place while a sample is being drawn.
+//!
+//! Method       With the rotation known, scale and translation enter every row linearly, so what is known of them is one Gaussian: the
+//!              prior at first, narrowed by each pair of a patch and a plane (a Kalman update).
+//! Source       sequential gating of pairs: joint compatibility (Neira and Tardos 2001)
+
+use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector4};
+
+use super::prior::Prior;
+use super::targets::Target;
+use crate::geometry::{Plane, Point3, Vector3};
+use crate::limits::SearchLimits;
+use crate::robust::Random;
+use crate::solvers::Row;
+
+/// How a row errs besides scale and place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowErrors {
+    /// Error of the model and of a patch's centre.
+    sigma_m: f64,
+    /// What an uncertain rotation adds, per metre of distance from the middle of the cloud.
+    sigma_per_m: f64,
+    /// What is known to within this is known.
+    learned_m: f64,
+    /// Of the cloud.
+    radius_m: f64,
+}
+
+/// Pairs beyond this many sigmas are not offered: as far as anything known beforehand is believed.
+const REACH_SIGMAS: f64 = 3.0;
+/// An open direction that is all scale and hardly any translation cannot be written as a plane.
+const SMALLEST_ACROSS: f64 = 1e-3;
+
+impl RowErrors {
+    pub fn new(limits: &SearchLimits, radius_m: f64) -> RowErrors {
+        RowErrors {
+            sigma_m: limits.row_sigma_m,
+            sigma_per_m: limits.row_sigma_per_m,
+            learned_m: limits.learned_m,
+            radius_m,
+        }
+    }
+}
+
+/// What is known of scale and translation, given the rotation.
+#[derive(Clone, Copy)]
+pub(super) struct Belief {
+    /// Level frame to city directions.
+    rotation: Matrix3<f64>,
+    /// Whether it may be off about level axes too, and not only about up.
+    leans: bool,
+    /// A turn that is wholly open yet: its axis, with one sigma for length, radians.
+    spin: Vector3<f64>,
+    mean: Vector4<f64>,
+    covariance: Matrix4<f64>,
+    errors: RowErrors,
+}
+
+impl Belief {
+    /// What the prior says, given the rotation.
+    pub fn new(prior: &Prior, rotation: Matrix3<f64>, errors: RowErrors) -> Belief {
+        let (mean, covariance) = prior.scale_and_place();
+        Belief { rotation, leans: !prior.up_is_known, spin: Vector3::zeros(), mean, covariance, errors }
+    }
+
+    /// The same of scale and place under another rotation.
+    pub fn turned(&self, rotation: Matrix3<f64>) -> Belief {
+        Belief { rotation, ..*self }
+    }
+
+    /// The same with a turn that is wholly open: its axis, with one sigma for length, radians.
+    pub fn spinning(&self, spin: Vector3<f64>) -> Belief {
+        Belief { spin, ..*self }
+    }
+
+    /// Level frame to city directions.
+    pub fn turn(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation * v
+    }
+
+    /// Coefficients of a row: `row . (scale, translation) + offset = 0`.
+    fn row(&self, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector4<f64> {
+        Vector4::new(normal.dot(&self.turn(&point.coords)), normal.x, normal.y, normal.z)
+    }
+
+    pub fn variance(&self, point: &Point3<f64>, normal: &Vector3<f64>) -> f64 {
+        let row = self.row(point, normal);
+        row.dot(&(self.covariance * row))
+    }
+
+    /// How likely a patch at `point` lies on the target, times the target's weight; `None` beyond three sigmas.
+    pub fn likelihood(&self, point: &Point3<f64>, target: &Target) -> Option<f64> {
+        let row = self.row(point, &target.plane.normal);
+        let residual = row.dot(&self.mean) + target.plane.offset;
+        let variance = row.dot(&(self.covariance * row)) + self.row_variance(point);
+        let miss_sq = residual * residual / variance;
+        if miss_sq > REACH_SIGMAS * REACH_SIGMAS {
+            return None;
+        }
+        // The patch's centre must be able to lie within the target's box.
+        let expected = self.turn(&point.coords) * self.mean[0] + self.mean.fixed_rows::<3>(1);
+        let arm = self.turn(&point.coords);
+        let spun = self.spin.cross(&arm);
+        for k in 0..3 {
+            let spread = self.covariance[(0, 0)] * arm[k] * arm[k]
+                + 2.0 * self.covariance[(0, k + 1)] * arm[k]
+                + self.covariance[(k + 1, k + 1)];
+            let slack = REACH_SIGMAS * (spread.max(0.0) + spun[k] * spun[k] + self.row_variance(point)).sqrt();
+            if expected[k] < target.low[k] - slack || expected[k] > target.high[k] + slack {
+                return None;
+            }
+        }
+        Some(target.weight * (-0.5 * miss_sq).exp())
+    }
+
+    /// Rows for the `missing` least known combinations of scale and translation, each at a value drawn evenly from the three
+    /// sigmas that are left of it, and the chance that this meets the truth; `None` where the scale alone is open, which no plane
+    /// can fix.
+    pub fn completion(&self, missing: usize, random: &mut Random) -> Option<(Vec<Row>, f64)> {
+        // The scale counts by what it moves at the scene's radius, so that all four are metres and the unit changes nothing.
+        let metres = Vector4::new(self.errors.radius_m, 1.0, 1.0, 1.0);
+        let eigen = SymmetricEigen::new(Matrix4::from_diagonal(&metres) * self.covariance * Matrix4::from_diagonal(&metres));
+        let mut order = [0, 1, 2, 3];
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let mut chance = 1.0;
+        let mut row = |k: &usize| {
+            let sigma_m = eigen.eigenvalues[*k].max(0.0).sqrt();
+            // Back to (scale, metres): v . (scale, translation) is the length that the eigenvector stands for.
+            let v = eigen.eigenvectors.column(*k).component_mul(&metres);
+            let value = v.dot(&self.mean) + sigma_m * REACH_SIGMAS * (2.0 * random.unit() - 1.0);
+            // v . (scale, translation) = value is the row of a point p with n . R p = v[0] / |n| on the plane across n.
+            let across = v.fixed_rows::<3>(1).into_owned();
+            let length = across.norm();
+            let normal = across.try_normalize(SMALLEST_ACROSS)?;
+            chance *= (self.errors.learned_m / (REACH_SIGMAS * sigma_m)).min(1.0);
+            Some(Row { point: self.unturn(&normal) * (v[0] / length), normal, offset: -value / length })
+        };
+        let rows: Option<Vec<Row>> = order[..missing.min(4)].iter().map(&mut row).collect();
+        rows.map(|rows| (rows, chance))
+    }
+
+    /// City to level directions.
+    fn unturn(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation.tr_mul(v)
+    }
+
+    /// What a row may be off besides scale and translation.
+    fn row_variance(&self, point: &Point3<f64>) -> f64 {
+        let arm_sq = if self.leans { point.coords.norm_squared() } else { point.coords.xy().norm_squared() };
+        self.errors.sigma_m.powi(2) + self.errors.sigma_per_m.powi(2) * arm_sq
+    }
+
+    /// Kalman update with the row of a pair.
+    pub fn learn(&mut self, point: &Point3<f64>, target: &Plane) {
+        let row = self.row(point, &target.normal);
+        let gain = self.covariance * row;
+        let variance = row.dot(&gain) + self.row_variance(point);
+        let residual = row.dot(&self.mean) + target.offset;
+        self.mean -= gain * (residual / variance);
+        self.covariance -= gain * gain.transpose() / variance;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Similarity, Start};
+    use crate::limits::Limits;
+    use crate::planes::PlaneId;
+    use crate::robust::Motion;
+
+    fn belief(motion: Motion) -> Belief {
+        let (start, limits) = (Start::with_default_sigmas(Similarity::identity()), Limits::default());
+        let prior = Prior::new(&start, Point3::origin(), motion, false, None, &limits);
+        Belief::new(&prior, Matrix3::identity(), RowErrors::new(&limits.search, 40.0))
+    }
+
+    fn wall(low: f64, offset: f64) -> Target {
+        Target {
+            id: PlaneId(0),
+            plane: Plane { normal: Vector3::x(), offset },
+            azimuth: 0.0,
+            elevation: 0.0,
+            low: Point3::new(5.0, 30.0, low),
+            high: Point3::new(5.0, 50.0, low + 5.0),
+            weight: 1.0,
+        }
+    }
+
+    #[test]
+    fn an_open_spin_moves_a_patch_within_its_plane_and_not_across() {
+        let belief = belief(Motion::Similarity);
+        let spinning = belief.spinning(Vector3::x() * 0.5);
+        let place = Point3::new(5.0, 40.0, 0.0);
+        // The wall stands 45 m higher: out of reach, but for a spin of some sigmas about the wall's own normal.
+        assert!(belief.likelihood(&place, &wall(0.0, -5.0)).is_some());
+        assert!(belief.likelihood(&place, &wall(45.0, -5.0)).is_none());
+        assert_eq!(spinning.likelihood(&place, &wall(45.0, -5.0)), belief.likelihood(&place, &wall(0.0, -5.0)));
+        assert!(spinning.likelihood(&place, &wall(45.0, -80.0)).is_none());
+    }
+
+    #[test]
+    fn a_pair_narrows_what_is_known_across_its_plane_and_along_it_nothing() {
+        let mut belief = belief(Motion::Rigid);
+        let place = Point3::new(0.0, 0.0, 0.0);
+        let before = [Vector3::x(), Vector3::y()].map(|n| belief.variance(&place, &n));
+        belief.learn(&place, &Plane { normal: Vector3::x(), offset: -4.0 });
+        let after = [Vector3::x(), Vector3::y()].map(|n| belief.variance(&place, &n));
+        assert!(after[0] < 0.1 && before[0] > 99.0 && after[1] == before[1], "{before:?} {after:?}");
+        // The wall at x = 4 pulls the place there.
+        assert!((belief.mean[1] - 4.0).abs() < 0.01, "{}", belief.mean);
+    }
+
+    #[test]
+    fn a_completion_meets_the_least_known_direction_and_says_with_which_chance() {
+        let mut belief = belief(Motion::Rigid);
+        for normal in [Vector3::x(), Vector3::y()] {
+            belief.learn(&Point3::origin(), &Plane { normal, offset: 0.0 });
+        }
+        let (rows, chance) = belief.completion(1, &mut Random::stream(1, 0)).unwrap();
+        assert!(rows[0].normal.z.abs() > 0.999, "{:?}", rows[0]);
+        // Three sigmas of height are 9 m to either side, and a metre is near enough.
+        assert!((chance - 1.0 / 9.0).abs() < 0.01 && rows[0].offset.abs() <= 9.0, "{chance}");
+    }
+
+    #[test]
+    fn what_is_least_known_does_not_depend_on_the_unit_of_the_reconstruction() {
+        // 15 % of scale move the rim of a scene of 40 m by 6 m, more than the height's 3 m and less than the place's 10.
+        let belief = belief(Motion::Similarity);
+        let (rows, _) = belief.completion(2, &mut Random::stream(1, 0)).unwrap();
+        assert!(rows.iter().all(|row| row.normal.z.abs() < 1e-9), "{rows:?}");
+        assert!(belief.completion(3, &mut Random::stream(1, 0)).is_none(), "the third is the scale alone");
+    }
+}

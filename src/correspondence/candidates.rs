@@ -1,0 +1,205 @@
+//! From many hypotheses to a few distinct poses, each as good as it can be made.
+//!
+//! Method       stages with larger panels and narrower gates refine, slide and rank fewer and fewer poses. From the second stage on a
+//!              pose also pays for every line of sight that it would block, and better poses in the basins beside join before the
+//!              last. Distinct poses stay distinct to the end: the verdict reads the distance to the runner-up.
+
+use rayon::prelude::*;
+
+use super::lead::{ballot, lead_sigmas};
+use super::refine::{Refined, Refiner};
+use super::scene::Scene;
+use super::search::{Hypotheses, largest_shift};
+use super::walk::{hop, slide};
+use crate::geometry::Similarity;
+
+/// A pose that survived to the end.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    pub refined: Refined,
+    /// Share of the vote that lies on the city.
+    pub share: f64,
+    /// Share of the vote whose lines of sight the city would block.
+    pub blocked: f64,
+    /// What leaving the start costs.
+    pub prior_cost: f64,
+    /// Samples of the search that led here.
+    pub hits: usize,
+    /// By how many standard errors the best pose leads this one; see the card of `lead`.
+    pub lead_sigmas: f64,
+}
+
+impl Candidate {
+    /// What speaks for the pose less what speaks against it.
+    pub fn balance(&self) -> f64 {
+        self.share - self.blocked - self.prior_cost
+    }
+}
+
+/// A round of improvement.
+struct Stage {
+    /// Probes that refine and rank.
+    panel: Vec<u32>,
+    /// Gates of refinement and of ranking, in units of the scene.
+    gates: &'static [f64],
+    ranking_gate: f64,
+    /// Whether lines of sight count.
+    sight: bool,
+    /// Whether better poses in the basins beside join first.
+    basins: bool,
+    /// Poses that go on.
+    keep: usize,
+}
+
+/// Probes whose lines of sight are traced.
+const SIGHT_PANEL: usize = 500;
+/// Probes that say which of two basins explains more.
+const BASIN_PANEL: usize = 1500;
+/// Voters of a ranking; a larger panel changes the third digit.
+const MOST_VOTERS: usize = 3000;
+
+/// The distinct poses that hypotheses lead to, best first.
+pub fn candidates(refiner: &Refiner, hypotheses: &Hypotheses) -> Vec<Candidate> {
+    let scene = refiner.scene;
+    let unranked = |ranked: &crate::robust::Ranked<Similarity>| Candidate { hits: ranked.hits, ..unjudged(refiner, &ranked.pose) };
+    let mut candidates: Vec<Candidate> = hypotheses.ranked.iter().map(unranked).collect();
+    for stage in stages(scene) {
+        if stage.basins {
+            candidates.extend(beside(refiner, &candidates));
+        }
+        candidates = candidates.par_iter().map(|c| improved(refiner, &stage, c)).collect();
+        candidates.retain(|c| scene.prior.reaches(&c.refined.city_from_level));
+        candidates = distinct(candidates, scene, stage.keep);
+    }
+    candidates.iter_mut().for_each(|c| c.refined = settled(refiner, &c.refined.city_from_level));
+    compared_with_the_best(candidates, scene)
+}
+
+/// A pose as a candidate of the last stage, not moved.
+pub fn candidate_at(refiner: &Refiner, pose: &Similarity) -> Candidate {
+    let [.., last] = stages(refiner.scene);
+    judged(refiner.scene, &last, unjudged(refiner, pose))
+}
+
+/// Candidates of one view of a cloud, joined by those of another view (up taken otherwise): each of these with the map between the level
+/// frames.
+pub fn joined(refiner: &Refiner, own: Vec<Candidate>, others: &[(Similarity, Candidate)]) -> Vec<Candidate> {
+    let scene = refiner.scene;
+    let seen_here = |(other_from_level, other): &(Similarity, Candidate)| {
+        // Level frames of one start differ by a turn: the scale is the same to the bit.
+        let pose = other.refined.city_from_level * *other_from_level;
+        let pose = Similarity { scale: other.refined.city_from_level.scale, ..pose };
+        Candidate { refined: settled(refiner, &pose), hits: other.hits, ..candidate_at(refiner, &pose) }
+    };
+    let all = own.into_iter().chain(others.iter().map(seen_here)).collect();
+    let [.., last] = stages(scene);
+    compared_with_the_best(distinct(all, scene, last.keep), scene)
+}
+
+/// A pose made sharp once more, with a gate as narrow as the residuals allow: what lies beyond is somebody else's facet.
+pub fn settled(refiner: &Refiner, pose: &Similarity) -> Refined {
+    let scene = refiner.scene;
+    let (firm, all) = (probes(scene.votes.firm), probes(scene.votes.probes.len()));
+    let sharp = refiner.sharpen(&firm, pose, scene.unit_m);
+    refiner.settle(&all, sharp, scene.unit_m, scene.limits.walk.settling_units * scene.unit_m)
+}
+
+fn compared_with_the_best(mut candidates: Vec<Candidate>, scene: &Scene) -> Vec<Candidate> {
+    let ballots: Vec<Vec<f64>> = candidates.iter().map(|c| ballot(scene, &c.refined.city_from_level)).collect();
+    let costs: Vec<f64> = candidates.iter().map(|c| c.prior_cost).collect();
+    for (k, c) in candidates.iter_mut().enumerate().skip(1) {
+        c.lead_sigmas = lead_sigmas(&ballots[0], &ballots[k], costs[k] - costs[0]);
+    }
+    candidates
+}
+
+fn stages(scene: &Scene) -> [Stage; 3] {
+    let votes = &scene.votes;
+    [
+        Stage {
+            panel: votes.panel(400),
+            gates: &[5.0, 5.0, 4.0, 3.3, 2.7],
+            ranking_gate: 2.3,
+            sight: false,
+            basins: false,
+            keep: 16,
+        },
+        Stage {
+            panel: votes.panel(1500),
+            gates: &[2.7, 2.3, 2.0, 1.7, 1.7],
+            ranking_gate: 1.3,
+            sight: true,
+            basins: false,
+            keep: 6,
+        },
+        Stage {
+            panel: probes(votes.firm),
+            gates: &[1.7, 1.3, 1.0, 1.0],
+            ranking_gate: 1.0,
+            sight: true,
+            basins: true,
+            keep: 6,
+        },
+    ]
+}
+
+fn probes(count: usize) -> Vec<u32> {
+    (0..count as u32).collect()
+}
+
+/// Better poses in basins beside those of the candidates, which stay: one that is far enough off remains a rival.
+fn beside(refiner: &Refiner, candidates: &[Candidate]) -> Vec<Candidate> {
+    let panel = refiner.scene.votes.panel(BASIN_PANEL);
+    candidates.par_iter().map(|c| unjudged(refiner, &hop(refiner, &panel, &c.refined.city_from_level))).collect()
+}
+
+fn unjudged(refiner: &Refiner, pose: &Similarity) -> Candidate {
+    let refined = refiner.assess(&[], pose, 0.0);
+    Candidate { refined, share: 0.0, blocked: 0.0, prior_cost: 0.0, hits: 0, lead_sigmas: 0.0 }
+}
+
+fn improved(refiner: &Refiner, stage: &Stage, candidate: &Candidate) -> Candidate {
+    let scene = refiner.scene;
+    let gates_m: Vec<f64> = stage.gates.iter().map(|g| g * scene.unit_m).collect();
+    let first = refiner.refine(&stage.panel, &candidate.refined.city_from_level, &gates_m);
+    let spectrum = first.chart.spectrum(&first.equations.full());
+    let (voters, gate_m) = (voters(scene, stage), stage.ranking_gate * scene.unit_m);
+    let slid = slide(scene, &voters, &first.chart, &spectrum, &first.city_from_level, gate_m);
+    let refined = if slid == first.city_from_level { first } else { refiner.refine(&stage.panel, &slid, &gates_m) };
+    judged(scene, stage, Candidate { refined, ..candidate.clone() })
+}
+
+/// What speaks for and against the pose of a candidate, by the panel of a stage.
+fn judged(scene: &Scene, stage: &Stage, candidate: Candidate) -> Candidate {
+    let pose = candidate.refined.city_from_level;
+    let blocked = if stage.sight { blocked_share(scene, &pose) } else { 0.0 };
+    let share = scene.panel_share(&voters(scene, stage), &pose, stage.ranking_gate * scene.unit_m);
+    Candidate { share, blocked, prior_cost: scene.prior.cost(&pose), ..candidate }
+}
+
+/// Loose points have no vote.
+fn voters(scene: &Scene, stage: &Stage) -> Vec<u32> {
+    scene.votes.panel(stage.panel.len().min(MOST_VOTERS))
+}
+
+fn blocked_share(scene: &Scene, pose: &Similarity) -> f64 {
+    let blocked = scene.blocked(&scene.votes.panel(SIGHT_PANEL), pose);
+    blocked.iter().filter(|b| **b).count() as f64 / blocked.len().max(1) as f64
+}
+
+/// The best `keep` of those that are truly different, best first.
+fn distinct(mut candidates: Vec<Candidate>, scene: &Scene, keep: usize) -> Vec<Candidate> {
+    candidates.sort_by(|a, b| b.balance().total_cmp(&a.balance()));
+    let same_m = scene.limits.refinement.same_pose_units * scene.unit_m;
+    let mut kept: Vec<Candidate> = Vec::new();
+    for c in candidates {
+        let shift =
+            |k: &Candidate| largest_shift(&k.refined.city_from_level, &c.refined.city_from_level, scene.votes.radius_m);
+        match kept.iter_mut().find(|k| shift(k) < same_m) {
+            Some(same) => same.hits += c.hits,
+            None => kept.push(c),
+        }
+    }
+    kept.truncate(keep);
+    kept
+}

@@ -1,0 +1,253 @@
+//! What is known of a pose before any data are looked at.
+//!
+//! Search, refinement and verdict ask it four things and nothing else: where a pose may lie ([`Prior::reaches`], [`Prior::reach`]),
+//! what leaving the expected place costs ([`Prior::cost`]), what scale and place are expected under a given rotation
+//! ([`Prior::scale_and_place`]), and how much it holds ([`Prior::information`]). Today there is one kind: a Gaussian about a start, whose
+//! sigmas no more than cover the city. Others (a disc, camera positions, control points) answer the same questions.
+//!
+//! Frames: `level` is centred on the cloud, z up, in metres of the start; the city frame is its own local one.
+
+use nalgebra::{Matrix4, Vector4};
+
+use crate::geometry::{Matrix3, Point3, Similarity, Start, StartSigmas, Vector3};
+use crate::limits::Limits;
+use crate::robust::{Chart, Matrix7, Motion};
+
+/// A Gaussian about a start, in the level frame.
+#[derive(Clone, Debug)]
+pub struct Prior {
+    /// Where the start puts the level frame's origin.
+    pub center_in_city: Point3<f64>,
+    /// Rigid where the scale is given: then it is one, in metres of the start.
+    pub motion: Motion,
+    /// Whether the level frame's z may be taken for up; else the tilt is as free as the start says.
+    pub up_is_known: bool,
+    sigmas: StartSigmas,
+    reach_sigmas: f64,
+    cost_of_sigma_sq: f64,
+    least_tilt_rad: f64,
+}
+
+/// A box of the city.
+#[derive(Clone, Copy, Debug)]
+pub struct Reach {
+    pub low: Point3<f64>,
+    pub high: Point3<f64>,
+}
+
+impl Reach {
+    #[inline]
+    pub fn contains(&self, p: &Point3<f64>) -> bool {
+        (0..3).all(|k| self.low[k] <= p[k] && p[k] <= self.high[k])
+    }
+}
+
+/// The extent of a cloud about its middle, metres of the start.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Horizontal, beyond which no more than stray points lie.
+    pub radius_m: f64,
+    pub bottom_m: f64,
+    pub top_m: f64,
+}
+
+/// Slack round everything, metres.
+const MARGIN_M: f64 = 2.0;
+
+impl Prior {
+    /// `center_in_city` is where the start puts the cloud's middle; `city` bounds what a sigma can mean.
+    pub fn new(
+        start: &Start,
+        center_in_city: Point3<f64>,
+        motion: Motion,
+        up_is_known: bool,
+        city: Option<(Point3<f64>, Point3<f64>)>,
+        limits: &Limits,
+    ) -> Prior {
+        Prior {
+            center_in_city,
+            motion,
+            up_is_known,
+            sigmas: bounded(start.sigmas(), &center_in_city, city),
+            reach_sigmas: limits.reach_sigmas,
+            cost_of_sigma_sq: limits.prior_cost,
+            least_tilt_rad: limits.least_tilt_rad,
+        }
+    }
+
+    /// The pose that is expected.
+    pub fn expected(&self) -> Similarity {
+        Similarity { translation: self.center_in_city.coords, ..Similarity::identity() }
+    }
+
+    /// Whether a pose lies within reach in every freedom.
+    pub fn reaches(&self, city_from_level: &Similarity) -> bool {
+        let tilt = city_from_level.rotation.matrix()[(2, 2)].clamp(-1.0, 1.0).acos();
+        tilt <= self.reach_sigmas * self.sigmas.tilt_rad.max(self.least_tilt_rad)
+            && self.offsets(city_from_level).iter().all(|o| o.abs() <= self.reach_sigmas)
+    }
+
+    /// What leaving the expected pose costs, shares of the vote.
+    pub fn cost(&self, city_from_level: &Similarity) -> f64 {
+        self.cost_of_sigma_sq * self.offsets(city_from_level).iter().map(|o| o * o).sum::<f64>()
+    }
+
+    /// How many sigmas a pose is from the expected one: heading, log scale, two horizontal axes, height.
+    fn offsets(&self, city_from_level: &Similarity) -> [f64; 5] {
+        let s = &self.sigmas;
+        let shift = city_from_level.translation - self.center_in_city.coords;
+        let any_heading = self.reach_sigmas * s.heading_rad >= std::f64::consts::PI;
+        let heading =
+            if any_heading { 0.0 } else { heading_of(city_from_level.rotation.matrix()) / s.heading_rad };
+        [
+            heading,
+            city_from_level.scale.ln() / s.log_scale,
+            shift.x / s.position_m,
+            shift.y / s.position_m,
+            shift.z / s.height_m,
+        ]
+    }
+
+    /// How far the heading may be off, and how far up, radians.
+    pub fn most_heading_rad(&self) -> f64 {
+        self.reach_sigmas * self.sigmas.heading_rad
+    }
+
+    pub fn most_tilt_rad(&self) -> f64 {
+        self.reach_sigmas * self.sigmas.tilt_rad
+    }
+
+    /// The largest scale within reach, relative to the start.
+    pub fn most_scale(&self) -> f64 {
+        match self.motion {
+            Motion::Rigid => 1.0,
+            Motion::Similarity => (self.reach_sigmas * self.sigmas.log_scale).exp(),
+        }
+    }
+
+    /// How far a scene may spin about a direction of the city, one sigma: heading about up, tilt about level axes.
+    pub fn spin_sigma_about(&self, axis: &Vector3<f64>) -> Vector3<f64> {
+        axis * (axis.z * self.sigmas.heading_rad).hypot(axis.xy().norm() * self.sigmas.tilt_rad)
+    }
+
+    /// Mean and covariance of (scale, translation), whatever the rotation.
+    pub fn scale_and_place(&self) -> (Vector4<f64>, Matrix4<f64>) {
+        let StartSigmas { position_m, height_m, log_scale, .. } = self.sigmas;
+        let scale_sigma = match self.motion {
+            Motion::Rigid => 0.0,
+            Motion::Similarity => log_scale,
+        };
+        let variances = Vector4::new(scale_sigma, position_m, position_m, height_m).map(|s| s * s);
+        let c = self.center_in_city;
+        (Vector4::new(1.0, c.x, c.y, c.z), Matrix4::from_diagonal(&variances))
+    }
+
+    /// The box that a cloud can come to lie in.
+    pub fn reach(&self, cloud: &Extent) -> Reach {
+        let grow = self.most_scale();
+        let (bottom, top) = (cloud.bottom_m.min(0.0) * grow, cloud.top_m.max(0.0) * grow);
+        let radius = cloud.radius_m * grow;
+        // A scene that leans rises by what it is wide, and is wider by what it is high.
+        let lean =
+            if self.up_is_known { 0.0 } else { self.most_tilt_rad().min(std::f64::consts::FRAC_PI_2).sin() };
+        let side = radius + lean * top.max(-bottom) + self.reach_sigmas * self.sigmas.position_m + MARGIN_M;
+        let rise = lean * radius + self.reach_sigmas * self.sigmas.height_m + MARGIN_M;
+        let c = self.center_in_city;
+        Reach {
+            low: Point3::new(c.x - side, c.y - side, c.z + bottom - rise),
+            high: Point3::new(c.x + side, c.y + side, c.z + top + rise),
+        }
+    }
+
+    /// Information in the chart's unknowns, 1 / m^2.
+    pub fn information(&self, chart: &Chart) -> Matrix7 {
+        let StartSigmas { position_m, height_m, heading_rad, tilt_rad, log_scale } = self.sigmas;
+        let r = chart.radius;
+        let sigmas = [r * tilt_rad, r * tilt_rad, r * heading_rad, position_m, position_m, height_m, r * log_scale];
+        Matrix7::from_diagonal(&sigmas.map(|s: f64| s.powi(-2)).into())
+    }
+}
+
+/// The turn about up that is nearest to a rotation, radians.
+pub fn heading_of(rotation: &Matrix3<f64>) -> f64 {
+    (rotation[(1, 0)] - rotation[(0, 1)]).atan2(rotation[(0, 0)] + rotation[(1, 1)])
+}
+
+/// Where one sigma covers the whole city a larger one says no more, and would only spread the samples.
+fn bounded(
+    sigmas: &StartSigmas,
+    center: &Point3<f64>,
+    city: Option<(Point3<f64>, Point3<f64>)>,
+) -> StartSigmas {
+    let Some((low, high)) = city else { return *sigmas };
+    let farthest = |k: usize| (center[k] - low[k]).abs().max((high[k] - center[k]).abs()) + MARGIN_M;
+    StartSigmas {
+        position_m: sigmas.position_m.min(farthest(0).hypot(farthest(1))),
+        height_m: sigmas.height_m.min(farthest(2)),
+        ..*sigmas
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Rotation3;
+
+    fn prior(change: impl FnOnce(&mut StartSigmas), motion: Motion) -> Prior {
+        let mut sigmas = StartSigmas::default();
+        change(&mut sigmas);
+        let start = Start::new(Similarity::identity(), sigmas).unwrap();
+        let city = (Point3::new(-50.0, -50.0, 0.0), Point3::new(250.0, 50.0, 20.0));
+        Prior::new(&start, Point3::new(100.0, 0.0, 5.0), motion, true, Some(city), &Limits::default())
+    }
+
+    fn usual() -> Prior {
+        prior(|_| (), Motion::Similarity)
+    }
+
+    fn moved(prior: &Prior, shift: [f64; 3], heading: f64, scale: f64) -> Similarity {
+        let rotation = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);
+        Similarity { scale, rotation, translation: prior.center_in_city.coords + Vector3::from(shift) }
+    }
+
+    #[test]
+    fn reaches_three_sigmas_in_every_freedom_and_not_beyond() {
+        let p = usual();
+        let degree = 1f64.to_radians();
+        for (pose, expected) in [
+            (p.expected(), true),
+            (moved(&p, [29.9, -29.9, 8.9], 29.9 * degree, 0.44f64.exp()), true),
+            (moved(&p, [30.1, 0.0, 0.0], 0.0, 1.0), false),
+            (moved(&p, [0.0, 0.0, 9.1], 0.0, 1.0), false),
+            (moved(&p, [0.0; 3], 30.1 * degree, 1.0), false),
+            (moved(&p, [0.0; 3], 0.0, 0.46f64.exp()), false),
+        ] {
+            assert_eq!(p.reaches(&pose), expected, "{pose:?}");
+        }
+    }
+
+    #[test]
+    fn the_cost_grows_with_the_square_of_the_sigmas_and_an_open_heading_is_free() {
+        let p = usual();
+        let once = p.cost(&moved(&p, [10.0, 0.0, 0.0], 0.0, 1.0));
+        assert!((p.cost(&moved(&p, [20.0, 0.0, 0.0], 0.0, 1.0)) - 4.0 * once).abs() < 1e-12);
+        let open = prior(|s| s.heading_rad = std::f64::consts::PI, Motion::Similarity);
+        assert_eq!(open.cost(&moved(&open, [0.0; 3], 3.0, 1.0)), 0.0);
+        assert!(open.reaches(&moved(&open, [0.0; 3], 3.0, 1.0)));
+    }
+
+    #[test]
+    fn a_sigma_beyond_the_city_says_no_more_than_the_city() {
+        let vast = prior(|s| (s.position_m, s.height_m) = (1e7, 1e7), Motion::Similarity);
+        let reach = vast.reach(&Extent { radius_m: 20.0, bottom_m: -5.0, top_m: 5.0 });
+        assert!((reach.high - reach.low).norm() < 3000.0, "{reach:?}");
+        assert!(reach.low.x < -50.0 && reach.high.x > 250.0);
+    }
+
+    #[test]
+    fn a_given_scale_is_no_unknown_of_the_prior() {
+        let rigid = prior(|_| (), Motion::Rigid);
+        let (mean, covariance) = rigid.scale_and_place();
+        assert_eq!((mean[0], covariance[(0, 0)], rigid.most_scale()), (1.0, 0.0, 1.0));
+    }
+}

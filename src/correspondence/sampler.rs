@@ -1,0 +1,392 @@
+//! Candidate pairs of patches and city planes, drawn so that a minimal sample agrees with the start and with itself.
+//!
+//! Question     which patch may lie on which plane of the city, given what the start says and the pairs already chosen?
+//! Input        votes (patches in the level frame), city planes that can be seen, the prior
+//! Output       minimal samples: rows for the solvers
+//! Method       with known up the first pair fixes the rotation, by its two azimuths; with free up the first two pairs do, by
+//!              their four normals. What is known of scale and place is a [`Belief`]. The next patch is one on
+//!              which it says least; its planes are those that face its way and lie within three sigmas of where
+//!              it expects the patch. Each draw tells the chance that it took the right plane: offers have their likelihoods
+//!              for weights, so an offer with the share w of all is right with chance w and taken as often: sum of w^2.
+//! Source       samples over patch-plane pairs and then
+//!              points inside them: Ramalingam et al. (ECCV 2010), section 5
+//!
+//! Frames: `level` is centred on the cloud, z up, in metres of the start; the city frame is its own local one.
+
+use nalgebra::Matrix3;
+
+use super::belief::{Belief, RowErrors};
+use super::prior::{Prior, heading_of};
+use super::scene::Scene;
+use super::targets::{LEAST_SIN_FOR_AZIMUTH, Target, Targets, azimuth, elevation, has_azimuth, wrapped};
+use super::votes::{LevelPatch, Votes};
+use crate::geometry::{Plane, Rotation3, Vector3};
+use crate::limits::SearchLimits;
+use crate::planes::PlaneId;
+use crate::robust::{Motion, Random};
+use crate::solvers::Row;
+
+/// A patch on a plane of the city.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
+    pub patch: u32,
+    pub plane: PlaneId,
+    /// The plane as the patch sees it: its normal on the patch's side.
+    pub target: Plane,
+    /// The patch's normal in the level frame, on the side from which it is meant.
+    pub normal: Vector3<f64>,
+}
+
+/// A minimal sample: pairs, and what completes them where they leave a direction open.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    pub pairs: Vec<Pair>,
+    /// Rows for what the pairs leave open (a height that no floor fixes), drawn from what the start says of it.
+    pub completion: Vec<Row>,
+    /// The chance that all of it is right, as far as its patches lie on the city at all.
+    pub chance: f64,
+}
+
+/// Draws samples.
+pub struct Sampler<'a> {
+    votes: &'a Votes,
+    prior: &'a Prior,
+    limits: &'a SearchLimits,
+    errors: RowErrors,
+    targets: Targets,
+    /// Rising sums of the patches' weights: all, and those with an azimuth.
+    all: Vec<f64>,
+    turned: Vec<f64>,
+}
+
+/// Two normals nearer to parallel than this do not fix a rotation.
+const LEAST_SIN_BETWEEN: f64 = 0.3;
+/// Sum and difference of normals shorter than this have no direction.
+const SMALLEST_BISECTOR: f64 = 1e-3;
+/// Patches compared when the next one is chosen.
+const TENDER: usize = 6;
+
+impl<'a> Sampler<'a> {
+    pub fn new(scene: &'a Scene<'a>) -> Sampler<'a> {
+        let (votes, prior, limits) = (&scene.votes, &scene.prior, &scene.limits.search);
+        let in_sight = scene.city.planes_in_sight(&scene.reach.low, &scene.reach.high);
+        let rising = |take: fn(&LevelPatch) -> bool| -> Vec<f64> {
+            let weights = votes.patches.iter().map(|p| if take(p) { p.weight } else { 0.0 });
+            weights.scan(0.0, |sum, weight| { *sum += weight; Some(*sum) }).collect()
+        };
+        Sampler {
+            votes,
+            prior,
+            limits,
+            errors: RowErrors::new(limits, votes.radius_m),
+            targets: Targets::new(scene.city.planes(), &in_sight, limits.smallest_target_m2),
+            all: rising(|_| true),
+            turned: rising(|p| has_azimuth(&p.normal)),
+        }
+    }
+
+    /// Whether the level frame's z may be taken for up.
+    pub fn up_is_known(&self) -> bool {
+        self.prior.up_is_known
+    }
+
+    /// A sample on so many planes, or `None` where a drawn patch fits nothing.
+    pub fn draw(&self, planes: usize, random: &mut Random) -> Option<Sample> {
+        let mut draft = if self.up_is_known() { self.begin_level(random)? } else { self.begin_leaning(random)? };
+        // Scale and translation: with the rotation fixed, each pair settles one of them.
+        let unknowns = match self.prior.motion {
+            Motion::Rigid => 3,
+            Motion::Similarity => 4,
+        };
+        while draft.pairs.len() < unknowns {
+            let Some(patch) = self.least_known(&draft.belief, random) else { break };
+            let pair = self.next_pair(patch, &draft.belief, random)?;
+            draft.take(self.votes, pair);
+        }
+        let (completion, chance) = draft.belief.completion(unknowns.saturating_sub(draft.pairs.len()), random)?;
+        // Planes beyond those hold the rotation.
+        while draft.pairs.len() + completion.len() < planes {
+            let patch = random.weighted(&self.all)?;
+            if draft.pairs.iter().any(|pair| pair.patch as usize == patch) {
+                return None;
+            }
+            let pair = self.next_pair(patch, &draft.belief, random)?;
+            draft.take(self.votes, pair);
+        }
+        Some(Sample { pairs: draft.pairs, completion, chance: draft.chance * chance })
+    }
+
+    /// Known up: one pair, and the heading that turns its patch into its plane.
+    fn begin_level(&self, random: &mut Random) -> Option<Draft> {
+        let first = random.weighted(&self.turned)?;
+        let Drawn { what: (heading_rad, pair), chance } = self.turned_pair(first, random)?;
+        let mut draft = Draft::new(self.belief(about_up(heading_rad)));
+        draft.take(self.votes, Drawn { what: pair, chance });
+        Some(draft)
+    }
+
+    /// Free up: two pairs, and the rotation that lays both patches along their planes.
+    fn begin_leaning(&self, random: &mut Random) -> Option<Draft> {
+        let [first, second] = [random.weighted(&self.all)?, random.weighted(&self.all)?];
+        let normal = |i: usize| &self.votes.patches[i].normal;
+        if normal(first).cross(normal(second)).norm() < LEAST_SIN_BETWEEN {
+            return None;
+        }
+        let pair = self.leaning_pair(first, random)?;
+        let Drawn { what: (rotation, other), chance } = self.second_pair(&pair.what, second, random)?;
+        let mut draft = Draft::new(self.belief(rotation));
+        draft.take(self.votes, pair);
+        draft.take(self.votes, Drawn { what: other, chance });
+        Some(draft)
+    }
+
+    fn belief(&self, rotation: Matrix3<f64>) -> Belief {
+        Belief::new(self.prior, rotation, self.errors)
+    }
+
+    /// A plane for the first patch under known up, and the heading that turns the patch into it.
+    fn turned_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<(f64, Pair)>> {
+        let p = &self.votes.patches[patch];
+        let reach = self.prior.most_heading_rad();
+        let belief = self.belief(Matrix3::identity());
+        let mut choice = Choice::default();
+        for normal in sides(p) {
+            let own = azimuth(&normal);
+            for t in self.targets.facing(own, reach) {
+                if !self.same_tilt(&normal, t) {
+                    continue;
+                }
+                let heading = wrapped(t.azimuth - own);
+                let turned = belief.turned(about_up(heading));
+                if let Some(likelihood) = turned.likelihood(&p.center, t) {
+                    choice.offer(likelihood, (heading, t.with(patch, normal)), random);
+                }
+            }
+        }
+        choice.drawn()
+    }
+
+    /// A plane for the first patch under free up. Its normal is laid onto the plane's; what stays open is a spin about it,
+    /// which moves the patch within its plane and not across.
+    fn leaning_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<Pair>> {
+        let p = &self.votes.patches[patch];
+        let belief = self.belief(Matrix3::identity());
+        let mut choice = Choice::default();
+        for normal in sides(p) {
+            let turn_onto = self.turning(&normal);
+            for t in self.targets.all() {
+                let Some(rotation) = turn_onto(t) else { continue };
+                let leaning = belief.turned(rotation).spinning(self.prior.spin_sigma_about(&t.plane.normal));
+                if let Some(likelihood) = leaning.likelihood(&p.center, t) {
+                    choice.offer(likelihood, t.with(patch, normal), random);
+                }
+            }
+        }
+        choice.drawn()
+    }
+
+    /// A plane for the second patch under free up, and the rotation that lays both normals along their planes'.
+    fn second_pair(&self, first: &Pair, patch: usize, random: &mut Random) -> Option<Drawn<(Matrix3<f64>, Pair)>> {
+        let p = &self.votes.patches[patch];
+        let belief = self.belief(Matrix3::identity());
+        let first_center = &self.votes.patches[first.patch as usize].center;
+        let mut choice = Choice::default();
+        for normal in sides(p) {
+            let cos = first.normal.dot(&normal);
+            let Some(level_axes) = bisectors(&first.normal, &normal) else { continue };
+            for t in self.targets.all() {
+                if (first.target.normal.dot(&t.plane.normal) - cos).abs() > self.limits.same_cos {
+                    continue;
+                }
+                let Some(city_axes) = bisectors(&first.target.normal, &t.plane.normal) else { continue };
+                let rotation = city_axes * level_axes.transpose();
+                if !self.allows(&rotation) {
+                    continue;
+                }
+                let mut turned = belief.turned(rotation);
+                turned.learn(first_center, &first.target);
+                if let Some(likelihood) = turned.likelihood(&p.center, t) {
+                    choice.offer(likelihood, (rotation, t.with(patch, normal)), random);
+                }
+            }
+        }
+        choice.drawn()
+    }
+
+    /// The rotation that lays a normal onto a target's: a heading first, as far as both have an azimuth, then the least tilt;
+    /// `None` where the start does not reach so far.
+    fn turning(&self, normal: &Vector3<f64>) -> impl Fn(&Target) -> Option<Matrix3<f64>> {
+        let (normal, has, own) = (*normal, has_azimuth(normal), [azimuth(normal), elevation(normal)]);
+        let tilt = self.prior.most_tilt_rad();
+        // A tilt turns azimuths too: by its tangent's share on slopes, to second order on walls.
+        let slope = normal.z.abs() / normal.xy().norm().max(LEAST_SIN_FOR_AZIMUTH);
+        let most_heading = self.prior.most_heading_rad() + tilt * slope + 0.5 * tilt * tilt;
+        let most_tilt = tilt + self.limits.same_angle_rad;
+        let least_cos = most_tilt.min(std::f64::consts::PI).cos();
+        move |t| {
+            let both_turned = has && has_azimuth(&t.plane.normal);
+            let heading = if both_turned { wrapped(t.azimuth - own[0]) } else { 0.0 };
+            if heading.abs() > most_heading || (t.elevation - own[1]).abs() > most_tilt {
+                return None;
+            }
+            let upright = about_up(heading);
+            let turned = upright * normal;
+            let within = turned.dot(&t.plane.normal) >= least_cos;
+            let leaning = within.then(|| Rotation3::rotation_between(&turned, &t.plane.normal))??;
+            Some(leaning.into_inner() * upright)
+        }
+    }
+
+    /// Whether the prior reaches a rotation, with the slack of patch normals.
+    fn allows(&self, r: &Matrix3<f64>) -> bool {
+        let most = |reach: f64| (reach + self.limits.same_angle_rad).min(std::f64::consts::PI);
+        r[(2, 2)] >= most(self.prior.most_tilt_rad()).cos()
+            && heading_of(r).abs() <= most(self.prior.most_heading_rad())
+    }
+
+    /// Of a few patches drawn by weight, the one whose place is known least; `None` when all are known well.
+    fn least_known(&self, belief: &Belief, random: &mut Random) -> Option<usize> {
+        let mut best = None;
+        let mut most = self.limits.learned_m.powi(2);
+        for _ in 0..TENDER {
+            let i = random.weighted(&self.all)?;
+            let p = &self.votes.patches[i];
+            let variance = belief.variance(&p.center, &(belief.turn(&p.normal)));
+            if variance > most {
+                most = variance;
+                best = Some(i);
+            }
+        }
+        best
+    }
+
+    fn next_pair(&self, patch: usize, belief: &Belief, random: &mut Random) -> Option<Drawn<Pair>> {
+        let p = &self.votes.patches[patch];
+        let mut choice = Choice::default();
+        for side in sides(p) {
+            let normal = belief.turn(&side);
+            let level: &[Target] = if has_azimuth(&normal) { &[] } else { &self.targets.level };
+            let turned = self.targets.facing(azimuth(&normal), if level.is_empty() { self.limits.same_angle_rad } else { 0.0 });
+            for t in turned.chain(level) {
+                if !self.same_tilt(&normal, t) {
+                    continue;
+                }
+                if let Some(likelihood) = belief.likelihood(&p.center, t) {
+                    choice.offer(likelihood, t.with(patch, side), random);
+                }
+            }
+        }
+        choice.drawn()
+    }
+
+    fn same_tilt(&self, normal: &Vector3<f64>, target: &Target) -> bool {
+        (elevation(normal) - target.elevation).abs() < self.limits.same_angle_rad
+    }
+}
+
+impl Target {
+    fn with(&self, patch: usize, normal: Vector3<f64>) -> Pair {
+        Pair { patch: patch as u32, plane: self.id, target: self.plane, normal }
+    }
+}
+
+/// A sample on its way.
+struct Draft {
+    belief: Belief,
+    pairs: Vec<Pair>,
+    chance: f64,
+}
+
+impl Draft {
+    fn new(belief: Belief) -> Draft {
+        Draft { belief, pairs: Vec::with_capacity(4), chance: 1.0 }
+    }
+
+    fn take(&mut self, votes: &Votes, drawn: Drawn<Pair>) {
+        self.belief.learn(&votes.patches[drawn.what.patch as usize].center, &drawn.what.target);
+        self.chance *= drawn.chance;
+        self.pairs.push(drawn.what);
+    }
+}
+
+/// One of a stream of offers, drawn with probability proportional to their weights.
+struct Choice<T> {
+    total: f64,
+    total_of_squares: f64,
+    taken: Option<T>,
+}
+
+/// What was drawn, and the chance that it is the right offer.
+struct Drawn<T> {
+    what: T,
+    chance: f64,
+}
+
+impl<T> Default for Choice<T> {
+    fn default() -> Self {
+        Choice { total: 0.0, total_of_squares: 0.0, taken: None }
+    }
+}
+
+impl<T> Choice<T> {
+    fn offer(&mut self, weight: f64, what: T, random: &mut Random) {
+        self.total += weight;
+        self.total_of_squares += weight * weight;
+        if random.unit() * self.total < weight {
+            self.taken = Some(what);
+        }
+    }
+
+    fn drawn(self) -> Option<Drawn<T>> {
+        let chance = self.total_of_squares / (self.total * self.total);
+        self.taken.map(|what| Drawn { what, chance })
+    }
+}
+
+/// A patch's normal, and its opposite where no camera tells the side.
+fn sides(patch: &LevelPatch) -> impl Iterator<Item = Vector3<f64>> + use<> {
+    let normal = patch.normal;
+    [1.0, -1.0].into_iter().take(if patch.sided { 1 } else { 2 }).map(move |side| normal * side)
+}
+
+/// The turn by a heading.
+fn about_up(heading_rad: f64) -> Matrix3<f64> {
+    let (sin, cos) = heading_rad.sin_cos();
+    Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
+}
+
+/// Sum and difference of two unit vectors, and what stands across both: axes at right angles. Laying such axes onto each other
+/// lays one pair of vectors onto another and divides evenly what their angles differ.
+fn bisectors(a: &Vector3<f64>, b: &Vector3<f64>) -> Option<Matrix3<f64>> {
+    let (sum, difference) = ((a + b).try_normalize(SMALLEST_BISECTOR)?, (a - b).try_normalize(SMALLEST_BISECTOR)?);
+    Some(Matrix3::from_columns(&[sum, difference, sum.cross(&difference)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bisectors_lay_one_pair_of_normals_onto_another() {
+        let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.0).into_inner();
+        let (a, b) = (Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.0, 1.0, 0.0));
+        let found = bisectors(&(turn * a), &(turn * b)).unwrap() * bisectors(&a, &b).unwrap().transpose();
+        assert!((found - turn).norm() < 1e-12 && (found.determinant() - 1.0).abs() < 1e-12);
+        assert!(bisectors(&a, &a).is_none() && bisectors(&a, &-a).is_none());
+    }
+
+    #[test]
+    fn the_chance_of_a_draw_is_that_of_taking_the_right_offer() {
+        let drawn = |weights: &[f64]| {
+            let mut choice = Choice::default();
+            let mut random = Random::stream(1, 0);
+            weights.iter().for_each(|w| choice.offer(*w, *w, &mut random));
+            choice.drawn().map(|drawn| drawn.chance)
+        };
+        assert_eq!(drawn(&[]), None);
+        assert_eq!(drawn(&[0.3]), Some(1.0));
+        // Two offers alike: right every other time. Three quarters and a quarter: 9/16 + 1/16.
+        assert_eq!(drawn(&[2.0, 2.0]), Some(0.5));
+        assert_eq!(drawn(&[3.0, 1.0]), Some(0.625));
+    }
+}

@@ -1,0 +1,100 @@
+//! Along the ways in which a pose may move: to the best of the places that lie there.
+//!
+//! Question     where along a direction does the pose explain most?
+//! Method       the pose is moved by each offset along the direction and valued, in parallel; the best wins, the nearest of equals.
+//!              Three walks use it: along what the data hold loosely, by the score ([`slide`]); along all directions at once into
+//!              neighbouring basins, each place refined first ([`hop`]; basin hopping, Wales and Doye 1997, with fixed moves instead of random ones);
+//!              and along what nothing holds, by the planes that find points (`Refiner::settle`)
+//! Why          a wall's top and foot tell the height softly, which says nothing to a least-squares step; a prior inside Gauss-Newton
+//!              would drag the pose off its facets. And facades have several parallel planes some decimetres apart: a cloud may
+//!              settle with some of its patches one plane off, held as firmly as at the right place
+
+use rayon::prelude::*;
+
+use super::prior::Prior;
+use super::refine::Refiner;
+use super::scene::Scene;
+use crate::geometry::Similarity;
+use crate::robust::{Chart, Direction, Spectrum};
+
+/// Places along a direction.
+pub(super) struct Stride {
+    pub direction: Direction,
+    /// Metres at the chart's radius.
+    pub offsets_m: Vec<f64>,
+}
+
+impl Stride {
+    /// So many even steps to either side, the nearest first.
+    pub fn even(step_m: f64, steps: i32) -> Vec<f64> {
+        (1..=steps).flat_map(|k| [f64::from(k) * step_m, -f64::from(k) * step_m]).collect()
+    }
+}
+
+/// A pose and what it is worth.
+pub(super) type Valued = (f64, Similarity);
+
+/// The best of `from` and the places of some strides from it; `value` gives what a place is worth and the pose to go on with from
+/// there. Places beyond the prior's reach do not count.
+pub(super) fn walk(
+    prior: &Prior,
+    chart: &Chart,
+    from: Valued,
+    strides: &[Stride],
+    value: impl Fn(&Similarity) -> Valued + Sync,
+) -> Valued {
+    let place = |(direction, offset_m): (&Direction, f64)| {
+        let moved = chart.moved(&from.1, &(direction.unit * offset_m));
+        let valued = prior.reaches(&moved).then(|| value(&moved));
+        valued.filter(|(_, pose)| prior.reaches(pose))
+    };
+    let all = strides.iter().flat_map(|s| s.offsets_m.iter().map(|offset_m| (&s.direction, *offset_m)));
+    let places: Vec<Option<Valued>> = all.collect::<Vec<_>>().into_par_iter().map(place).collect();
+    places.into_iter().flatten().fold(from, |best, place| if place.0 > best.0 { place } else { best })
+}
+
+/// The pose after a walk along each loose direction in turn, by the score of `panel` within `gate_m`.
+pub fn slide(scene: &Scene, panel: &[u32], chart: &Chart, spectrum: &Spectrum, pose: &Similarity, gate_m: f64) -> Similarity {
+    let limits = &scene.limits.walk;
+    let step_m = limits.step_of_gate * gate_m;
+    let value = |pose: &Similarity| (scene.score(panel, pose, gate_m), *pose);
+    let mut loose = spectrum.directions().iter().filter(|d| d.sigma_m > limits.loose_m).peekable();
+    if loose.peek().is_none() {
+        return *pose;
+    }
+    let walked = loose.fold(value(pose), |best, direction| {
+        // A loose direction that is held a little ends where its own sigmas end.
+        let steps = (scene.limits.reach_sigmas * direction.sigma_m / step_m).min(f64::from(limits.most_steps)).ceil();
+        let stride = Stride { direction: *direction, offsets_m: Stride::even(step_m, steps as i32) };
+        walk(&scene.prior, chart, best, &[stride], value)
+    });
+    walked.1
+}
+
+/// Gates of refinement after a move into a neighbouring basin, units of the scene: as wide as a move, then as a vote.
+const BASIN_GATES_UNITS: [f64; 4] = [1.7, 1.3, 1.0, 1.0];
+
+/// The best pose about `pose` in its own basin and those beside it, by the score of `panel`.
+pub fn hop(refiner: &Refiner, panel: &[u32], pose: &Similarity) -> Similarity {
+    let scene = refiner.scene;
+    let (limits, unit_m) = (&scene.limits.walk, scene.unit_m);
+    let gates_m = BASIN_GATES_UNITS.map(|g| g * unit_m);
+    let refined = |pose: &Similarity| {
+        let refined = refiner.refine(panel, pose, &gates_m);
+        ((scene.score(panel, &refined.city_from_level, unit_m), refined.city_from_level), refined)
+    };
+    let offsets_m = limits.basin_moves_units.map(|units| units * unit_m).to_vec();
+    let (mut best, mut from) = refined(pose);
+    for _ in 0..limits.most_rounds {
+        let begun = best;
+        let spectrum = from.chart.spectrum(&from.equations.full());
+        let stride = |direction: &Direction| Stride { direction: *direction, offsets_m: offsets_m.clone() };
+        let strides: Vec<Stride> = spectrum.directions().iter().map(stride).collect();
+        best = walk(&scene.prior, &from.chart, best, &strides, |pose| refined(pose).0);
+        if best.1 == begun.1 {
+            break;
+        }
+        from = refined(&best.1).1;
+    }
+    best.1
+}

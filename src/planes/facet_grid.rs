@@ -1,0 +1,366 @@
+//! The facets near any place of the city, with their extents and outward sides, in time independent of the city's size.
+//!
+//! Question     which facet does a point with this normal lie on, and how far off is it?
+//! Method       a grid whose cells list the triangles that come within a reach of them and that somebody could have seen; a triangle
+//!              counts only where the point's normal agrees with its outward one. Cells are filled tile by tile when a point first falls into one
+//! Why a grid   the search asks some ten million times for the nearest facet *of the same side and direction*; a tree of boxes
+//!              knows no normals and would walk through all of a street to find that nothing matches
+
+use std::sync::OnceLock;
+
+use super::city_planes::PlaneId;
+use super::prepared_city::PreparedCity;
+use crate::city::{CityModel, FacetId};
+use crate::geometry::{Point3, Vector3};
+
+/// Where a point meets the city.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    pub plane: PlaneId,
+    /// Of the facet's plane, outward.
+    pub normal: Vector3<f64>,
+    /// Signed distance from the facet's plane, metres.
+    pub across_m: f64,
+    /// How far the foot of the perpendicular lies outside the triangle, metres; 0 inside.
+    pub outside_m: f64,
+}
+
+impl Hit {
+    pub fn distance_sq(&self) -> f64 {
+        self.across_m * self.across_m + self.outside_m * self.outside_m
+    }
+}
+
+/// A point as the grid sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    pub position: Point3<f64>,
+    /// Of the patch; for a loose point the direction to the cameras that saw it.
+    pub normal: Vector3<f64>,
+    /// False where it is not known from which side the point was seen: both signs of the normal count.
+    pub sided: bool,
+    /// Cosine of the largest angle between `normal` and the outward normal of a facet that the point may lie on.
+    pub min_cos: f64,
+}
+
+/// A grid over a whole city.
+pub struct FacetGrid {
+    reach_m: f64,
+    low: Point3<f64>,
+    cell_m: f64,
+    /// Tiles along each axis.
+    tiles: [usize; 3],
+    /// For each tile the triangles that come within reach of it: those of tile `i` are `near[starts[i]..starts[i + 1]]`.
+    starts: Vec<u32>,
+    near: Vec<u32>,
+    filled: Vec<OnceLock<Tile>>,
+}
+
+/// The cells of one tile.
+struct Tile {
+    triangles: Vec<GridTriangle>,
+    /// The triangles of cell `i` are `entries[starts[i]..starts[i + 1]]`, in rising order.
+    starts: Vec<u32>,
+    entries: Vec<u32>,
+}
+
+/// A triangle prepared for distance queries.
+#[derive(Clone, Copy, Debug)]
+struct GridTriangle {
+    /// Of the facet's plane, outward.
+    normal: Vector3<f64>,
+    offset: f64,
+    /// For each edge the in-plane unit normal that points out of the triangle, and its offset.
+    edges: [(Vector3<f64>, f64); 3],
+    plane: PlaneId,
+}
+
+/// Triangles smaller than this have no direction to speak of.
+const SMALLEST_TRIANGLE_M2: f64 = 1e-6;
+/// Cells along an edge of a tile.
+const TILE: usize = 16;
+/// Cells as wide as this share of the reach: half as wide lists are half as long, and filling them takes four times as long.
+const CELL_OF_REACH: f64 = 0.5;
+/// A grid never has more tiles than this; a larger city gets larger cells.
+const MOST_TILES: f64 = 4e6;
+
+impl FacetGrid {
+    pub(super) fn new(city: &CityModel, reach_m: f64) -> FacetGrid {
+        let (low, high) = city.bounds().unwrap_or((Point3::origin(), Point3::origin()));
+        let (low, high) = (low - Vector3::repeat(reach_m), high + Vector3::repeat(reach_m));
+        let extent = high - low;
+        let tile_m = (CELL_OF_REACH * reach_m * TILE as f64).max((extent.product() / MOST_TILES).cbrt());
+        let tiles = [0, 1, 2].map(|k| (extent[k] / tile_m).ceil().max(1.0) as usize);
+        let mut grid = FacetGrid {
+            reach_m,
+            low,
+            cell_m: tile_m / TILE as f64,
+            tiles,
+            starts: Vec::new(),
+            near: Vec::new(),
+            filled: (0..tiles.iter().product()).map(|_| OnceLock::new()).collect(),
+        };
+        grid.sort_into_tiles(city, tile_m);
+        grid
+    }
+
+    pub fn reach_m(&self) -> f64 {
+        self.reach_m
+    }
+
+    fn sort_into_tiles(&mut self, city: &CityModel, tile_m: f64) {
+        let ranges = |triangle: &[u32; 3]| -> [(usize, usize); 3] {
+            let [a, b, c] = triangle.map(|v| city.vertices[v as usize]);
+            let reach = Vector3::repeat(self.reach_m);
+            let (low, high) = (a.inf(&b).inf(&c) - reach - self.low, a.sup(&b).sup(&c) + reach - self.low);
+            [0, 1, 2].map(|k| ((low[k] / tile_m) as usize, ((high[k] / tile_m) as usize).min(self.tiles[k] - 1)))
+        };
+        let each_tile = |triangle: &[u32; 3], visit: &mut dyn FnMut(usize)| {
+            let [x, y, z] = ranges(triangle);
+            for z in z.0..=z.1 {
+                for y in y.0..=y.1 {
+                    (x.0..=x.1).for_each(|x| visit((z * self.tiles[1] + y) * self.tiles[0] + x));
+                }
+            }
+        };
+        let mut starts = vec![0u32; self.filled.len() + 1];
+        city.triangles.iter().for_each(|t| each_tile(t, &mut |tile| starts[tile + 1] += 1));
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let mut near = vec![0u32; starts[starts.len() - 1] as usize];
+        let mut next = starts.clone();
+        for (i, triangle) in city.triangles.iter().enumerate() {
+            each_tile(triangle, &mut |tile| {
+                near[next[tile] as usize] = i as u32;
+                next[tile] += 1;
+            });
+        }
+        (self.starts, self.near) = (starts, near);
+    }
+
+    /// The nearest triangle within `gate_m` whose outward normal agrees with the probe's. A gate wider than the grid's reach is
+    /// cut to it.
+    #[inline]
+    pub fn nearest(&self, probe: &Probe, gate_m: f64, city: &PreparedCity) -> Option<Hit> {
+        let p = &probe.position;
+        let d = (p - self.low) / self.cell_m;
+        if !(d.x >= 0.0 && d.y >= 0.0 && d.z >= 0.0) {
+            return None;
+        }
+        let (x, y, z) = (d.x as usize, d.y as usize, d.z as usize);
+        let (tx, ty, tz) = (x / TILE, y / TILE, z / TILE);
+        if tx >= self.tiles[0] || ty >= self.tiles[1] || tz >= self.tiles[2] {
+            return None;
+        }
+        let at = (tz * self.tiles[1] + ty) * self.tiles[0] + tx;
+        let tile = self.filled[at].get_or_init(|| self.fill(at, city));
+        let cell = ((z % TILE) * TILE + y % TILE) * TILE + x % TILE;
+        let list = tile.entries.get(tile.starts[cell] as usize..tile.starts[cell + 1] as usize)?;
+        let gate_m = gate_m.min(self.reach_m);
+        let (mut best, mut best_sq) = (None, gate_m * gate_m);
+        for &i in list {
+            let t = &tile.triangles[i as usize];
+            let cos = t.normal.dot(&probe.normal);
+            if (if probe.sided { cos } else { cos.abs() }) < probe.min_cos {
+                continue;
+            }
+            let across_m = t.normal.dot(&p.coords) + t.offset;
+            if across_m * across_m >= best_sq {
+                continue;
+            }
+            let outside_m = t.outside(p);
+            let distance_sq = across_m * across_m + outside_m * outside_m;
+            if distance_sq < best_sq {
+                best_sq = distance_sq;
+                best = Some((t, across_m, outside_m));
+            }
+        }
+        best.map(|(t, across_m, outside_m)| Hit { plane: t.plane, normal: t.normal, across_m, outside_m })
+    }
+
+    fn fill(&self, at: usize, city: &PreparedCity) -> Tile {
+        let [x, y, z] = [at % self.tiles[0], at / self.tiles[0] % self.tiles[1], at / self.tiles[0] / self.tiles[1]];
+        let low = self.low + Vector3::new(x as f64, y as f64, z as f64) * (self.cell_m * TILE as f64);
+        let near = &self.near[self.starts[at] as usize..self.starts[at + 1] as usize];
+        let prepared = |&t: &u32| {
+            let corners = city.corners(t);
+            let prepared = GridTriangle::new(&corners, city, city.facet_of(t))?;
+            city.is_exposed(t).then_some((prepared, corners))
+        };
+        let triangles: Vec<(GridTriangle, [Point3<f64>; 3])> = near.iter().filter_map(prepared).collect();
+        let mut starts = vec![0u32; TILE * TILE * TILE + 1];
+        let mut found: Vec<(u32, u32)> = Vec::new();
+        for (i, (triangle, corners)) in triangles.iter().enumerate() {
+            self.each_cell(&low, triangle, corners, |cell| {
+                starts[cell + 1] += 1;
+                found.push((cell as u32, i as u32));
+            });
+        }
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let mut entries = vec![0u32; found.len()];
+        let mut next = starts.clone();
+        for (cell, i) in found {
+            let place = &mut next[cell as usize];
+            entries[*place as usize] = i;
+            *place += 1;
+        }
+        Tile { triangles: triangles.into_iter().map(|(t, _)| t).collect(), starts, entries }
+    }
+
+    /// Calls `visit` with every cell of the tile at `low` that holds a place within reach of the triangle (and a few more at its
+    /// corners).
+    fn each_cell(
+        &self,
+        low: &Point3<f64>,
+        t: &GridTriangle,
+        [a, b, c]: &[Point3<f64>; 3],
+        mut visit: impl FnMut(usize),
+    ) {
+        let reach = Vector3::repeat(self.reach_m);
+        let (first, last) = (a.inf(b).inf(c) - reach - low.coords, a.sup(b).sup(c) + reach - low.coords);
+        let mut range = [(0usize, 0usize); 3];
+        for k in 0..3 {
+            let (first, last) = ((first[k] / self.cell_m).floor(), (last[k] / self.cell_m).floor());
+            if last < 0.0 || first >= TILE as f64 {
+                return;
+            }
+            range[k] = (first.max(0.0) as usize, (last as usize).min(TILE - 1));
+        }
+        let near = self.reach_m + self.cell_m * 0.5 * 3f64.sqrt();
+        for z in range[2].0..=range[2].1 {
+            for y in range[1].0..=range[1].1 {
+                for x in range[0].0..=range[0].1 {
+                    let center = low + self.cell_m * Vector3::new(x as f64 + 0.5, y as f64 + 0.5, z as f64 + 0.5);
+                    let across = t.normal.dot(&center.coords) + t.offset;
+                    if across.abs() <= near && t.outside(&center) <= near {
+                        visit((z * TILE + y) * TILE + x);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl GridTriangle {
+    fn new(corners: &[Point3<f64>; 3], city: &PreparedCity, facet: FacetId) -> Option<GridTriangle> {
+        let [a, b, c] = corners;
+        let across = (b - a).cross(&(c - a));
+        if across.norm() < 2.0 * SMALLEST_TRIANGLE_M2 {
+            return None;
+        }
+        let plane = &city.model.facets[facet.0 as usize].plane;
+        // The triangulation may wind against the facet; edges point out of the triangle all the same.
+        let winding = if across.dot(&plane.normal) < 0.0 { -1.0 } else { 1.0 };
+        let edge = |from: &Point3<f64>, to: &Point3<f64>| {
+            let out = (to - from).cross(&plane.normal).normalize() * winding;
+            (out, -out.dot(&from.coords))
+        };
+        Some(GridTriangle {
+            normal: plane.normal,
+            offset: plane.offset,
+            edges: [edge(a, b), edge(b, c), edge(c, a)],
+            plane: city.planes().of_facet(facet),
+        })
+    }
+
+    /// How far a point's foot lies outside: exact beside an edge, a little too small beyond a sharp corner.
+    #[inline]
+    fn outside(&self, p: &Point3<f64>) -> f64 {
+        let [a, b, c] = &self.edges;
+        let (a, b, c) = (a.0.dot(&p.coords) + a.1, b.0.dot(&p.coords) + b.1, c.0.dot(&p.coords) + c.1);
+        a.max(b).max(c).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::city::{Facet, ObjectId};
+    use crate::geometry::Plane;
+
+    /// Two walls, 0.4 m apart, back to back, 10 m wide and 6 m high: one looks to +x from x = 0.2, one to -x from x = -0.2.
+    fn two_walls() -> CityModel {
+        let mut city = CityModel { objects: vec!["walls".to_owned()], ..CityModel::default() };
+        for (x, side) in [(0.2, 1.0), (-0.2, -1.0)] {
+            let first = city.vertices.len() as u32;
+            let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 6.0), (0.0, 6.0)];
+            city.vertices.extend(corners.iter().map(|&(y, z)| Point3::new(x, y, z)));
+            let start = city.triangles.len() as u32;
+            city.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+            city.facets.push(Facet {
+                outline: (first..first + 4).collect(),
+                plane: Plane::through(&Point3::new(x, 0.0, 0.0), &Vector3::new(side, 0.0, 0.0)).unwrap(),
+                area: 60.0,
+                object: ObjectId(0),
+                triangles: start..start + 2,
+            });
+        }
+        city
+    }
+
+    fn prepared() -> PreparedCity {
+        PreparedCity::new(two_walls())
+    }
+
+    fn probe(x: f64, y: f64, z: f64, side: f64) -> Probe {
+        Probe { position: Point3::new(x, y, z), normal: Vector3::new(side, 0.0, 0.0), sided: true, min_cos: 0.9 }
+    }
+
+    #[test]
+    fn finds_the_facet_that_faces_the_same_way_though_another_is_nearer() {
+        let city = prepared();
+        let grid = city.grid(1.5);
+        let hit = grid.nearest(&probe(-0.3, 5.0, 3.0, 1.0), 1.0, &city).unwrap();
+        assert!((hit.across_m + 0.5).abs() < 1e-12 && hit.outside_m == 0.0);
+        assert_eq!(hit.normal, Vector3::x());
+        let either = Probe { sided: false, ..probe(-0.3, 5.0, 3.0, 1.0) };
+        assert_eq!(grid.nearest(&either, 1.0, &city).unwrap().normal, -Vector3::x());
+    }
+
+    #[test]
+    fn measures_to_the_edge_and_ends_at_the_gate() {
+        let city = prepared();
+        let grid = city.grid(1.5);
+        let hit = grid.nearest(&probe(0.2, 5.0, 6.7, 1.0), 1.0, &city).unwrap();
+        assert!(hit.across_m.abs() < 1e-12 && (hit.outside_m - 0.7).abs() < 1e-12);
+        assert!(grid.nearest(&probe(0.2, 5.0, 7.2, 1.0), 1.0, &city).is_none());
+        assert!(grid.nearest(&probe(f64::NAN, 5.0, 3.0, 1.0), 1.0, &city).is_none());
+        assert!(grid.nearest(&probe(1e9, 5.0, 3.0, 1.0), 1.0, &city).is_none());
+    }
+
+    #[test]
+    fn agrees_with_looking_at_every_triangle() {
+        let city = prepared();
+        let grid = city.grid(1.5);
+        let triangles: Vec<GridTriangle> = (0..city.model.triangles.len() as u32)
+            .map(|t| GridTriangle::new(&city.corners(t), &city, city.facet_of(t)).unwrap())
+            .collect();
+        for i in 0..500 {
+            let part = |k: u64| ((i as u64 * 2_654_435_761 + k * 40_503) % 1000) as f64 / 1000.0;
+            let p = probe(2.0 * part(1) - 1.0, 14.0 * part(2) - 2.0, 10.0 * part(3) - 2.0, 1.0);
+            let slow = triangles
+                .iter()
+                .filter(|t| t.normal.x > 0.0)
+                .map(|t| (t.normal.dot(&p.position.coords) + t.offset).hypot(t.outside(&p.position)))
+                .fold(f64::INFINITY, f64::min);
+            let fast = grid.nearest(&p, 1.5, &city).map(|h| h.distance_sq().sqrt());
+            match fast {
+                Some(d) => assert!((d - slow).abs() < 1e-12),
+                None => assert!(slow >= 1.5),
+            }
+        }
+    }
+
+    #[test]
+    fn parts_of_a_run_share_a_grid_and_a_gate_beyond_its_reach_is_cut_to_it() {
+        let city = prepared();
+        let grid = city.grid(1.5);
+        assert!(std::sync::Arc::ptr_eq(&grid, &city.grid(1.51)) && grid.reach_m() >= 1.51);
+        assert!(grid.nearest(&probe(0.2 + 2.0, 5.0, 3.0, 1.0), 50.0, &city).is_none());
+    }
+
+    #[test]
+    fn an_empty_city_has_no_facet_anywhere() {
+        let city = PreparedCity::new(CityModel::default());
+        assert!(city.grid(1.0).nearest(&probe(0.0, 0.0, 0.0, 1.0), 1.0, &city).is_none());
+    }
+}

@@ -2,6 +2,7 @@
 
 mod alignment;
 pub mod colmap;
+mod escape;
 pub mod gltf;
 pub mod obj;
 mod placement;
@@ -9,5 +10,6 @@ pub mod ply;
 mod start;
 
 pub use alignment::{StoredAlignment, read_alignment};
+pub use escape::escaped;
 pub use placement::PlacementError;
 pub use start::read_start;

@@ -7,6 +7,7 @@ use super::build::build;
 use super::recognise::{Format, recognise};
 use super::source::Source;
 use super::{CityModel, CityRole};
+use crate::format::file::{LARGEST_MODEL_BYTES, read_regular};
 use crate::format::gltf::{self, GltfError};
 use crate::format::obj::{self, ObjError};
 
@@ -67,7 +68,8 @@ pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Res
 }
 
 fn read_source(path: &Path, role: CityRole, options: &CityOptions) -> Result<Source, CityError> {
-    let bytes = std::fs::read(path).map_err(|reason| CityError::Unreadable { path: path.to_owned(), reason })?;
+    let bytes = read_regular(path, LARGEST_MODEL_BYTES)
+        .map_err(|reason| CityError::Unreadable { path: path.to_owned(), reason })?;
     match recognise(&bytes, path)? {
         Format::Gltf => {
             let folder = path.parent().unwrap_or(Path::new(""));

@@ -2,6 +2,7 @@
 
 mod alignment;
 pub mod colmap;
+pub mod file;
 mod escape;
 pub mod gltf;
 pub mod obj;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::file::read_regular;
 use crate::geometry::{Matrix3, NotASimilarity, Similarity, StartError, Vector3};
 
 /// The longest report of a large city has some megabytes; a file beyond this is another file given by mistake.
@@ -14,8 +15,6 @@ const LARGEST_FILE_BYTES: u64 = 64 << 20;
 pub enum PlacementError {
     #[error("cannot read the {what}: {source}: {}", path.display())]
     Io { what: &'static str, path: PathBuf, source: std::io::Error },
-    #[error("the {what} has {bytes} bytes; expected a JSON file of at most {LARGEST_FILE_BYTES}: {}", path.display())]
-    TooLarge { what: &'static str, path: PathBuf, bytes: u64 },
     /// `source` names line, column and key.
     #[error("not a valid {what}: {source}; expected {expected} (NaN and infinity are no JSON): {}", path.display())]
     Json { what: &'static str, expected: &'static str, path: PathBuf, source: serde_json::Error },
@@ -59,10 +58,6 @@ pub(super) fn read_json<T: serde::de::DeserializeOwned>(
     expected: &'static str,
 ) -> Result<T, PlacementError> {
     let io = |source| PlacementError::Io { what, path: path.into(), source };
-    let bytes = std::fs::metadata(path).map_err(io)?.len();
-    if bytes > LARGEST_FILE_BYTES {
-        return Err(PlacementError::TooLarge { what, path: path.into(), bytes });
-    }
-    let text = std::fs::read(path).map_err(io)?;
+    let text = read_regular(path, LARGEST_FILE_BYTES).map_err(io)?;
     serde_json::from_slice(&text).map_err(|source| PlacementError::Json { what, expected, path: path.into(), source })
 }

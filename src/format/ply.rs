@@ -2,12 +2,14 @@
 //!
 //! `ply-rs-bw` reads headers and binary rows. ASCII rows are read here, as it refuses `nan` and blank lines.
 
-use std::fs;
+use std::collections::HashSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+
+use super::file::{LARGEST_MODEL_BYTES, read_regular};
 
 /// Why a PLY file could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -42,7 +44,8 @@ pub fn is_ply(start: &[u8]) -> bool {
 }
 
 pub fn read_ply(path: &Path) -> Result<PlyCloud, PlyError> {
-    let bytes = fs::read(path).map_err(|source| PlyError::Unreadable { path: path.into(), source })?;
+    let bytes =
+        read_regular(path, LARGEST_MODEL_BYTES).map_err(|source| PlyError::Unreadable { path: path.into(), source })?;
     PlyFile { path, bytes: &bytes }.read()
 }
 
@@ -203,8 +206,8 @@ impl PlyFile<'_> {
     /// that the parser takes it; the number of its lines, and where the rows begin.
     fn cleaned_header(&self) -> Result<(String, usize, usize), PlyError> {
         let mut cleaned = String::new();
-        let mut names: Vec<String> = Vec::new();
-        let mut elements: Vec<String> = Vec::new();
+        let mut names: HashSet<String> = HashSet::new();
+        let mut elements: HashSet<String> = HashSet::new();
         let mut at = 0;
         for (index, line) in self.bytes.split_inclusive(|b| *b == b'\n').enumerate() {
             at += line.len();
@@ -222,19 +225,21 @@ impl PlyFile<'_> {
             };
             match (words.first().copied(), name) {
                 (Some("element"), Some(name)) => {
-                    if elements.iter().any(|known| known == name) {
-                        return Err(self.header_fault(number, format!("the element `{name}` is there twice")));
+                    if !elements.insert(name.to_string()) {
+                        return Err(self
+                            .header_fault(number, format!("the element `{}` is there twice", shown(name.as_bytes()))));
                     }
-                    elements.push(name.to_string());
                     names.clear();
                     let count = words.get(2).copied().unwrap_or("");
                     cleaned.push_str(&format!("element {} {count}\n", plain(name)));
                 }
                 (Some("property"), Some(name)) => {
-                    if names.iter().any(|known| known == name) {
-                        return Err(self.header_fault(number, format!("the property `{name}` is there twice")));
+                    if !names.insert(name.to_string()) {
+                        return Err(self.header_fault(
+                            number,
+                            format!("the property `{}` is there twice", shown(name.as_bytes())),
+                        ));
                     }
-                    names.push(name.to_string());
                     let mut name_in_header = plain(name);
                     if name_in_header != name {
                         name_in_header.push_str(&format!("_{}", names.len()));

@@ -1,11 +1,11 @@
 //! Finds out what a path holds, and reads it.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::{Reconstruction, ReconstructionWarning, WarningKind, colmap, ply};
 use crate::format::colmap::{ColmapError, missing_files, read_model};
+use crate::format::file::open_regular;
 use crate::format::ply::{PlyError, is_ply, read_ply};
 
 /// Why a reconstruction could not be read.
@@ -53,7 +53,7 @@ fn is_model(folder: &Path) -> bool {
 
 fn read_file(path: &Path) -> Result<Reconstruction, ReconstructionError> {
     let mut start = Vec::new();
-    File::open(path)
+    open_regular(path)
         .and_then(|file| file.take(4).read_to_end(&mut start))
         .map_err(|source| ReconstructionError::Unreadable { path: path.into(), source })?;
     if is_ply(&start) {

@@ -18,7 +18,7 @@ const POINT_BYTES: usize = 8 + 3 * 8 + 3 + 8 + 8;
 const TRACK_ELEMENT_BYTES: usize = 4 + 4;
 
 /// Longest name of an image; more is no name but a file without the zero byte that ends it.
-const MAX_NAME_BYTES: u64 = 1 << 16;
+pub(super) const MAX_NAME_BYTES: u64 = 1 << 16;
 
 /// Reads on in a file and knows how much is left of it. Files are not read whole first: the bytes of a record go
 /// through the same small buffers, which spares the machine half of the memory and most of the time to fetch it.

@@ -9,12 +9,13 @@ mod text;
 mod write;
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
+use super::file::{LARGEST_MODEL_BYTES, is_there, open_regular, read_at_most};
 use binary::Cursor;
 pub use records::*;
-pub use write::{cameras_file, frames_file, rigs_file, write_images, write_points};
+pub use write::{cameras_file, can_be_named, frames_file, rigs_file, write_images, write_points};
 
 /// Files that every model has; `rigs` and `frames` come with newer releases only.
 const NEEDED_STEMS: [&str; 3] = ["cameras", "images", "points3D"];
@@ -86,12 +87,12 @@ pub fn read_model(folder: &Path) -> Result<Model, ColmapError> {
 /// for COLMAP.
 fn find(folder: &Path, stem: &str) -> Option<PathBuf> {
     let file = |stem: &str, extension: &str| folder.join(format!("{stem}.{extension}"));
-    let is_whole = |extension: &&str| NEEDED_STEMS.iter().all(|stem| file(stem, extension).is_file());
+    let is_whole = |extension: &&str| NEEDED_STEMS.iter().all(|stem| is_there(&file(stem, extension)));
     let extensions = match ["bin", "txt"].into_iter().find(is_whole) {
         Some(whole) => vec![whole],
         None => vec!["bin", "txt"],
     };
-    extensions.into_iter().map(|extension| file(stem, extension)).find(|path| path.is_file())
+    extensions.into_iter().map(|extension| file(stem, extension)).find(|path| is_there(path))
 }
 
 type BinaryParser<T> = fn(Cursor<BufReader<File>>) -> Result<T, Fault>;
@@ -136,15 +137,14 @@ fn parse<T>(
     binary: BinaryParser<T>,
     text: TextParser<T>,
 ) -> Result<(T, Encoding), Fault> {
-    let file = File::open(path).map_err(Fault::Unreadable)?;
+    let file = open_regular(path).map_err(Fault::Unreadable)?;
     let length = file.metadata().map_err(Fault::Unreadable)?.len();
     let mut reader = BufReader::with_capacity(READ_BYTES, file);
     let start = reader.fill_buf().map_err(Fault::Unreadable)?;
     if !is_text(start, path.extension().is_some_and(|e| e == "txt")) {
         return Ok((binary(Cursor::new(reader, length))?, Encoding::Binary));
     }
-    bytes.reserve_exact(usize::try_from(length).unwrap_or(0));
-    reader.read_to_end(bytes).map_err(Fault::Unreadable)?;
+    *bytes = read_at_most(reader, length, LARGEST_MODEL_BYTES).map_err(Fault::Unreadable)?;
     Ok((text(bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes))?, Encoding::Text))
 }
 

@@ -6,12 +6,22 @@ use std::io::{Result, Write};
 
 use rayon::prelude::*;
 
+use super::binary::MAX_NAME_BYTES;
 use super::records::*;
 
 /// Pieces of a file that are put together at once, and records in a piece; any numbers give the same file.
 const PIECES_AT_ONCE: usize = 16;
 const IMAGES_IN_PIECE: usize = 2;
 const POINTS_IN_PIECE: usize = 1 << 12;
+
+/// Whether an image's name, written in this encoding, is read again as it is: in binary a zero byte ends it, in text its
+/// line's end, and blanks around it are lost.
+pub fn can_be_named(encoding: Encoding, name: &[u8]) -> bool {
+    match encoding {
+        Encoding::Binary => !name.contains(&0) && (name.len() as u64) < MAX_NAME_BYTES,
+        Encoding::Text => !name.contains(&b'\n') && name.trim_ascii() == name,
+    }
+}
 
 /// The file of the cameras.
 pub fn cameras_file(encoding: Encoding, cameras: &[CameraRecord]) -> Vec<u8> {

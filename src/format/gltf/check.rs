@@ -10,11 +10,25 @@ use super::buffers::Buffers;
 use super::nodes::{json_error, missing};
 use super::{GltfError, GltfProblem};
 
-/// An accessor without bytes is all zeros and may claim any count; none that is honest claims as much as this.
-const ZEROS_LIMIT: u64 = 1 << 24;
+/// Parts of a glTF file that a reader of triangles must trust; the tree of nodes is read elsewhere.
+const GEOMETRY: [&str; 4] = ["accessors", "bufferViews", "buffers", "meshes"];
 
-/// Parts of a glTF file that a reader of triangles must trust.
-const GEOMETRY: [&str; 7] = ["accessors", "bufferViews", "buffers", "meshes", "nodes", "scene", "scenes"];
+/// Those parts, parsed. The others (materials, animations, ...) are passed over: a few bytes of JSON can make much of them.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Geometry {
+    asset: json::Asset,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+    #[serde(default)]
+    accessors: Vec<json::Accessor>,
+    #[serde(default)]
+    buffer_views: Vec<json::buffer::View>,
+    #[serde(default)]
+    buffers: Vec<json::Buffer>,
+    #[serde(default)]
+    meshes: Vec<json::Mesh>,
+}
 
 /// Extensions that change how a surface looks, and not where it is.
 const LOOKS: [&str; 6] =
@@ -22,8 +36,10 @@ const LOOKS: [&str; 6] =
 
 /// Parses the JSON and checks what all geometry hangs on.
 pub(super) fn document(json: &[u8]) -> Result<gltf::Document, GltfError> {
-    let root: json::Root = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
-    check_extensions(&root)?;
+    let Geometry { asset, extensions_required, accessors, buffer_views, buffers, meshes } =
+        serde_json::from_slice(json).map_err(|error| json_error(&error))?;
+    check_extensions(&extensions_required)?;
+    let root = json::Root { asset, accessors, buffer_views, buffers, meshes, ..json::Root::default() };
     check_primitives(&root)?;
     let mut first = None;
     root.validate(&root, json::Path::new, &mut |path, error| {
@@ -74,8 +90,8 @@ fn explained(error: Error) -> &'static str {
     }
 }
 
-fn check_extensions(root: &json::Root) -> Result<(), GltfError> {
-    let needed = root.extensions_required.iter().find(|name| !LOOKS.iter().any(|looks| name.starts_with(looks)));
+fn check_extensions(required: &[String]) -> Result<(), GltfError> {
+    let needed = required.iter().find(|name| !LOOKS.iter().any(|looks| name.starts_with(looks)));
     let Some(name) = needed else { return Ok(()) };
     let remedy = match name.as_str() {
         "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
@@ -170,10 +186,11 @@ fn check_bytes(
             let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
             items(count, offset).check(root, view.value(), buffers).map_err(|error| named(error, index))?;
         }
-        None if accessor.sparse.is_none() || count > ZEROS_LIMIT => {
+        None if accessor.sparse.is_none() => {
             let what = format!("accessor of {count} elements has no bufferView");
             return Err(at_accessor(index, GltfProblem::Invalid { what }));
         }
+        // All zeros but for the sparse values: `MeshReader` bounds the count.
         None => {}
     }
     let Some(sparse) = &accessor.sparse else { return Ok(()) };

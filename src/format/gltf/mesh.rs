@@ -12,9 +12,22 @@ use super::{GltfError, GltfFile, GltfPart, GltfProblem, check};
 /// Metres; the same reach as an OBJ file has.
 const COORDINATE_LIMIT: f64 = 1e9;
 
-/// Vertices and indices together, over all nodes. A few bytes of JSON can show one mesh a million times; memory for
-/// this many is what a large machine has.
+/// Vertices and indices together, over all nodes: memory for this many is what a large machine has.
 const ELEMENT_LIMIT: usize = 1 << 26;
+
+/// A file may come to this many vertices and indices for each of its bytes. Written out, a vertex has twelve bytes and an index
+/// at least one; but a node of some sixty bytes shows a whole mesh once more, and a sparse accessor may claim any number of
+/// zeros. Chosen: a lamp of 4,000 of them may be at every corner.
+const ELEMENTS_PER_BYTE: usize = 64;
+
+/// ... and to this many in any case; they take a few megabytes.
+const ELEMENTS_OF_ANY_FILE: usize = 1 << 16;
+
+/// As many elements stand for what is kept of a node with a mesh, and of a primitive, besides.
+const ELEMENTS_OF_A_PART: usize = 8;
+
+/// Bytes of a name that take as much memory as an element.
+const NAME_BYTES_OF_AN_ELEMENT: usize = 16;
 
 /// Reads meshes that were checked.
 pub(super) struct MeshReader<'a> {
@@ -23,33 +36,47 @@ pub(super) struct MeshReader<'a> {
     /// Vertices and indices of each mesh that was checked.
     sizes: Vec<Option<usize>>,
     elements: usize,
+    file_bytes: usize,
 }
 
 impl<'a> MeshReader<'a> {
-    pub fn new(document: &'a Document, buffers: Buffers<'a>) -> MeshReader<'a> {
+    /// `file_bytes`: of the file without the buffers beside it.
+    pub fn new(document: &'a Document, buffers: Buffers<'a>, file_bytes: usize) -> MeshReader<'a> {
         let sizes = vec![None; document.as_json().meshes.len()];
-        MeshReader { document, buffers, sizes, elements: 0 }
+        MeshReader { document, buffers, sizes, elements: 0, file_bytes }
     }
 
     /// Checks the mesh, and that there is room for it once more. To be called for every node before any is read.
-    pub fn check(&mut self, placed: &Placed) -> Result<(), GltfError> {
+    pub fn check(&mut self, placed: &Placed<'_>) -> Result<(), GltfError> {
         let size = match self.sizes.get(placed.mesh) {
             Some(Some(size)) => *size,
             _ => self.check_mesh(placed)?,
         };
-        self.elements = self.elements.saturating_add(size);
-        if self.elements > ELEMENT_LIMIT {
-            return Err(GltfError::at(&placed.place, GltfProblem::TooLarge { limit: ELEMENT_LIMIT }));
+        let besides = ELEMENTS_OF_A_PART + placed.name_bytes() / NAME_BYTES_OF_AN_ELEMENT;
+        self.elements = self.elements.saturating_add(size).saturating_add(besides);
+        self.check_room(self.elements, placed)
+    }
+
+    /// Refuses more elements than the bytes that are there can stand for.
+    fn check_room(&self, elements: usize, placed: &Placed<'_>) -> Result<(), GltfError> {
+        let bytes = self.file_bytes.saturating_add(self.buffers.bytes_beside());
+        let limit = bytes.saturating_mul(ELEMENTS_PER_BYTE).clamp(ELEMENTS_OF_ANY_FILE, ELEMENT_LIMIT);
+        if elements > limit {
+            return Err(GltfError::at(placed.place(), GltfProblem::TooLarge { limit, bytes }));
         }
         Ok(())
     }
 
-    fn check_mesh(&mut self, placed: &Placed) -> Result<usize, GltfError> {
+    fn check_mesh(&mut self, placed: &Placed<'_>) -> Result<usize, GltfError> {
         let root = self.document.as_json();
-        let missing_mesh = || GltfError::at(&placed.place, missing("mesh", placed.mesh, root.meshes.len()));
+        let missing_mesh = || GltfError::at(placed.place(), missing("mesh", placed.mesh, root.meshes.len()));
         let mesh = self.document.meshes().nth(placed.mesh).ok_or_else(missing_mesh)?;
         let mut size: usize = 0;
-        for primitive in mesh.primitives().filter(has_surface) {
+        for primitive in mesh.primitives() {
+            size = size.saturating_add(ELEMENTS_OF_A_PART);
+            if !has_surface(&primitive) {
+                continue;
+            }
             let place = format!("meshes[{}].primitives[{}]", placed.mesh, primitive.index());
             let invalid = |what: &str| GltfError::at(&place, GltfProblem::Invalid { what: what.to_owned() });
             let positions = primitive.get(&Semantic::Positions).ok_or_else(|| invalid("primitive has no POSITION"))?;
@@ -59,16 +86,18 @@ impl<'a> MeshReader<'a> {
                 check::indices(root, indices.index(), &mut self.buffers)?;
                 size = size.saturating_add(indices.count());
             }
+            // Here too: many primitives may share one accessor, which is looked through for each.
+            self.check_room(size, placed)?;
         }
         self.sizes[placed.mesh] = Some(size);
         Ok(size)
     }
 
     /// Adds one mesh where it stands.
-    pub fn read(&self, placed: &Placed, file: &mut GltfFile) -> Result<(), GltfError> {
+    pub fn read(&self, placed: &Placed<'_>, file: &mut GltfFile) -> Result<(), GltfError> {
         let Some(mesh) = self.document.meshes().nth(placed.mesh) else { return Ok(()) };
         let (positions, triangles) = (Vec::new(), Vec::new());
-        let mut part = GltfPart { name: placed.name.clone(), positions, triangles, spacing_m: 0.0 };
+        let mut part = GltfPart { name: placed.name(), positions, triangles, spacing_m: 0.0 };
         for primitive in mesh.primitives() {
             if has_surface(&primitive) {
                 let place = || format!("meshes[{}].primitives[{}]", placed.mesh, primitive.index());
@@ -76,7 +105,7 @@ impl<'a> MeshReader<'a> {
                     .map_err(|problem| GltfError::at(place(), problem))?;
             } else {
                 file.without_surface += 1;
-                file.first_without_surface.get_or_insert_with(|| placed.name.clone());
+                file.first_without_surface.get_or_insert_with(|| placed.name());
             }
         }
         file.parts.extend((!part.triangles.is_empty()).then_some(part));
@@ -86,7 +115,7 @@ impl<'a> MeshReader<'a> {
     fn read_primitive(
         &self,
         primitive: &Primitive<'_>,
-        placed: &Placed,
+        placed: &Placed<'_>,
         part: &mut GltfPart,
     ) -> Result<(), GltfProblem> {
         let reader = primitive.reader(|buffer| self.buffers.bytes(buffer.index()));
@@ -118,7 +147,7 @@ fn has_surface(primitive: &Primitive<'_>) -> bool {
 /// Adds the vertices in the scene's frame; returns how many they are.
 fn place_vertices(
     positions: impl Iterator<Item = [f32; 3]>,
-    placed: &Placed,
+    placed: &Placed<'_>,
     part: &mut GltfPart,
 ) -> Result<usize, GltfProblem> {
     let first = part.positions.len();

@@ -13,6 +13,7 @@ mod tests;
 
 use std::path::Path;
 
+use super::escaped;
 use buffers::Buffers;
 pub use container::is_glb;
 use mesh::MeshReader;
@@ -56,13 +57,13 @@ pub struct GltfError {
 pub enum GltfProblem {
     #[error("the file is cut off: {what} says {claimed} bytes, {found} are there")]
     Truncated { what: &'static str, claimed: u64, found: u64 },
-    #[error("glTF version {found}, expected 2; convert the file")]
+    #[error("glTF version {}, expected 2; convert the file", escaped(found))]
     Version { found: String },
     #[error("expected a chunk of type {expected}, found {found}")]
     Chunk { expected: &'static str, found: String },
-    #[error("the JSON is broken: {message}")]
+    #[error("the JSON is broken: {}", escaped(message))]
     Json { message: String },
-    #[error("the file needs the extension {name}, which is not read; {remedy}")]
+    #[error("the file needs the extension {}, which is not read; {remedy}", escaped(name))]
     Extension { name: String, remedy: &'static str },
     #[error("{what} {index} does not exist, there are {count}")]
     Missing { what: &'static str, index: u64, count: usize },
@@ -76,9 +77,12 @@ pub enum GltfProblem {
     IndexOutOfRange { index: u32, vertices: usize },
     #[error("vertex {vertex} is not finite or farther than {limit:e} m from zero")]
     OutOfReach { vertex: usize, limit: f64 },
-    #[error("more than {limit} vertices and indices when every node has its mesh; split the file")]
-    TooLarge { limit: usize },
-    #[error("buffer `{uri}` cannot be read: {reason}")]
+    #[error(
+        "more than {limit} vertices and indices when every node has its mesh, too many for {bytes} bytes; split the file, \
+         or write every mesh where it stands"
+    )]
+    TooLarge { limit: usize, bytes: usize },
+    #[error("buffer `{}` cannot be read: {reason}", escaped(uri))]
     Buffer { uri: String, reason: String },
 }
 
@@ -97,16 +101,16 @@ impl GltfError {
 pub fn read_gltf(bytes: &[u8], folder: &Path) -> Result<GltfFile, GltfError> {
     let (json, blob) = if is_glb(bytes) { container::split(bytes)? } else { (bytes, None) };
     check::version(json)?;
-    let nodes = nodes::read(json)?;
+    let tree = nodes::read(json)?;
     let document = check::document(json)?;
-    let placed = nodes::place(&nodes, document.as_json())?;
-    let mut reader = MeshReader::new(&document, Buffers::new(blob, folder));
+    let placed = nodes::place(&tree, &document.as_json().meshes)?;
+    let mut reader = MeshReader::new(&document, Buffers::new(blob, folder), bytes.len());
     for place in &placed {
-        reader.check(place).map_err(|error| error.of(&place.name))?;
+        reader.check(place).map_err(|error| error.of(&place.name()))?;
     }
     let mut file = GltfFile::default();
     for place in &placed {
-        reader.read(place, &mut file).map_err(|error| error.of(&place.name))?;
+        reader.read(place, &mut file).map_err(|error| error.of(&place.name()))?;
     }
     Ok(file)
 }

@@ -1,10 +1,12 @@
 //! The tree of nodes, with transforms in f64.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::fmt;
 
 use gltf::json;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 
 use super::{GltfError, GltfProblem};
 
@@ -12,61 +14,145 @@ use super::{GltfError, GltfProblem};
 const SHORTEST_QUATERNION: f64 = 1e-6;
 
 /// The parts of the JSON whose numbers the `gltf` crate would change: it rounds transforms to f32, and cuts indices
-/// beyond 32 bits down to some that may exist. These here are refused by their type.
+/// beyond 32 bits down to some that may exist. These here are refused by their type. Only the tree is kept.
 #[derive(Deserialize)]
-struct RawRoot {
+pub(super) struct Tree {
     #[serde(default)]
-    nodes: Vec<RawNode>,
+    nodes: Vec<Slot>,
+    scene: Option<u32>,
+    #[serde(default)]
+    scenes: Vec<Scene>,
     #[serde(default, rename = "meshes")]
-    _meshes: Vec<RawMesh>,
+    _meshes: Vec<CheckedMesh>,
     #[serde(default, rename = "accessors")]
-    _accessors: Vec<RawReference>,
+    _accessors: Vec<CheckedReference>,
     #[serde(default, rename = "bufferViews")]
-    _buffer_views: Vec<RawReference>,
+    _buffer_views: Vec<CheckedReference>,
 }
 
-#[derive(Clone, Default, Deserialize)]
-pub(super) struct RawNode {
-    matrix: Option<[f64; 16]>,
+#[derive(Deserialize)]
+struct Scene {
+    #[serde(default)]
+    nodes: Box<[u32]>,
+}
+
+/// A node, or nothing where it has neither mesh nor children: `{}` takes three bytes of the file, and no more than eight here.
+#[derive(Deserialize)]
+#[serde(from = "Node")]
+struct Slot(Option<Box<Node>>);
+
+impl From<Node> for Slot {
+    fn from(node: Node) -> Slot {
+        let shows_nothing = node.mesh.is_none() && node.children.is_empty();
+        Slot((!shows_nothing).then(|| Box::new(node)))
+    }
+}
+
+#[derive(Deserialize)]
+struct Node {
+    name: Option<Box<str>>,
+    matrix: Option<Box<[f64; 16]>>,
     translation: Option<[f64; 3]>,
     rotation: Option<[f64; 4]>,
     scale: Option<[f64; 3]>,
-    #[serde(rename = "mesh")]
-    _mesh: Option<u32>,
-    #[serde(rename = "children")]
-    _children: Option<Vec<u32>>,
+    mesh: Option<u32>,
+    #[serde(default)]
+    children: Box<[u32]>,
+}
+
+/// An index of at most 32 bits, looked at and not kept.
+struct CheckedIndex;
+
+impl<'de> Deserialize<'de> for CheckedIndex {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<CheckedIndex, D::Error> {
+        u32::deserialize(deserializer).map(|_| CheckedIndex)
+    }
+}
+
+/// Indices by name, looked at and not kept.
+#[derive(Default)]
+struct CheckedIndices;
+
+impl<'de> Deserialize<'de> for CheckedIndices {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<CheckedIndices, D::Error> {
+        struct Entries;
+        impl<'de> Visitor<'de> for Entries {
+            type Value = CheckedIndices;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("indices by name")
+            }
+
+            fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<CheckedIndices, M::Error> {
+                while map.next_entry::<IgnoredAny, CheckedIndex>()?.is_some() {}
+                Ok(CheckedIndices)
+            }
+        }
+        deserializer.deserialize_map(Entries)
+    }
 }
 
 #[derive(Deserialize)]
-struct RawMesh {
+struct CheckedMesh {
     #[serde(default, rename = "primitives")]
-    _primitives: Vec<RawPrimitive>,
+    _primitives: Vec<CheckedPrimitive>,
 }
 
 #[derive(Deserialize)]
-struct RawPrimitive {
+struct CheckedPrimitive {
     #[serde(default, rename = "attributes")]
-    _attributes: BTreeMap<String, u32>,
+    _attributes: CheckedIndices,
     #[serde(rename = "indices")]
-    _indices: Option<u32>,
+    _indices: Option<CheckedIndex>,
 }
 
 #[derive(Deserialize)]
-struct RawReference {
+struct CheckedReference {
     #[serde(rename = "bufferView")]
-    _buffer_view: Option<u32>,
+    _buffer_view: Option<CheckedIndex>,
     #[serde(rename = "buffer")]
-    _buffer: Option<u32>,
+    _buffer: Option<CheckedIndex>,
 }
 
-/// A mesh and where it stands: `x_in_scene = linear * x_in_mesh + shift`.
-pub(super) struct Placed {
-    pub name: String,
-    /// Place in the JSON.
-    pub place: String,
+/// A mesh and where it stands: `x_in_scene = linear * x_in_mesh + shift`. Names are borrowed: a long one may be shown by
+/// many nodes.
+pub(super) struct Placed<'a> {
+    name: Option<&'a str>,
+    shown_by: ShownBy,
     pub mesh: usize,
     pub linear: Matrix3<f64>,
     pub shift: Vector3<f64>,
+}
+
+/// What shows a mesh, by its number.
+enum ShownBy {
+    Node(u32),
+    /// In a file without nodes.
+    Itself,
+}
+
+impl Placed<'_> {
+    /// The node's name, else the mesh's, else a number.
+    pub fn name(&self) -> String {
+        match (self.name, &self.shown_by) {
+            (Some(name), _) => name.to_owned(),
+            (None, ShownBy::Node(node)) => format!("node {node}"),
+            (None, ShownBy::Itself) => format!("mesh {}", self.mesh),
+        }
+    }
+
+    /// Bytes of the name.
+    pub fn name_bytes(&self) -> usize {
+        self.name.map_or(0, str::len)
+    }
+
+    /// Place in the JSON.
+    pub fn place(&self) -> String {
+        match self.shown_by {
+            ShownBy::Node(node) => format!("nodes[{node}]"),
+            ShownBy::Itself => format!("meshes[{}]", self.mesh),
+        }
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -78,9 +164,8 @@ struct Affine {
 const IDENTITY: Affine =
     Affine { linear: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), shift: Vector3::new(0.0, 0.0, 0.0) };
 
-pub(super) fn read(json: &[u8]) -> Result<Vec<RawNode>, GltfError> {
-    let root: RawRoot = serde_json::from_slice(json).map_err(|error| json_error(&error))?;
-    Ok(root.nodes)
+pub(super) fn read(json: &[u8]) -> Result<Tree, GltfError> {
+    serde_json::from_slice(json).map_err(|error| json_error(&error))
 }
 
 pub(super) fn json_error(error: &serde_json::Error) -> GltfError {
@@ -92,66 +177,82 @@ pub(super) fn json_error(error: &serde_json::Error) -> GltfError {
 }
 
 /// All meshes of the scene that is shown, walked from the roots down in file order.
-pub(super) fn place(nodes: &[RawNode], root: &json::Root) -> Result<Vec<Placed>, GltfError> {
-    if root.nodes.is_empty() {
-        return Ok(lone_meshes(root));
+pub(super) fn place<'a>(tree: &'a Tree, meshes: &'a [json::Mesh]) -> Result<Vec<Placed<'a>>, GltfError> {
+    let nodes = &tree.nodes;
+    if nodes.is_empty() {
+        return Ok(lone_meshes(meshes));
     }
+    /// Siblings not yet walked, and their parent's transform.
+    struct Level<'n> {
+        left: std::slice::Iter<'n, u32>,
+        parent: Affine,
+    }
+    let roots = tree.roots()?;
     let mut placed = Vec::new();
-    let mut is_seen = vec![false; root.nodes.len()];
-    let mut open: Vec<(usize, Affine)> = roots(root).into_iter().rev().map(|node| (node, IDENTITY)).collect();
-    while let Some((index, parent)) = open.pop() {
-        let at = |problem| GltfError::at(format!("nodes[{index}]"), problem);
-        let (Some(node), Some(raw)) = (root.nodes.get(index), nodes.get(index)) else {
-            return Err(at(missing("node", index, root.nodes.len())));
+    let mut is_seen = vec![false; nodes.len()];
+    let mut open = vec![Level { left: roots.iter(), parent: IDENTITY }];
+    while let Some(Level { left, parent }) = open.last_mut() {
+        let Some(&number) = left.next() else {
+            open.pop();
+            continue;
         };
+        let at = |problem| GltfError::at(format!("nodes[{number}]"), problem);
+        let index = number as usize;
+        let Slot(node) = nodes.get(index).ok_or_else(|| at(missing("node", index, nodes.len())))?;
         if std::mem::replace(&mut is_seen[index], true) {
             let what = "node has two parents, or is its own ancestor; nodes must form a tree".to_owned();
             return Err(at(GltfProblem::Invalid { what }));
         }
-        let here = raw.affine().map_err(at)?.after(&parent);
+        let Some(node) = node else { continue };
+        let Affine { linear, shift } = node.affine().map_err(at)?.after(parent);
         if let Some(mesh) = node.mesh {
-            let mesh_name = root.meshes.get(mesh.value()).and_then(|mesh| mesh.name.clone());
-            let name = node.name.clone().or(mesh_name).unwrap_or_else(|| format!("node {index}"));
-            let place = format!("nodes[{index}]");
-            placed.push(Placed { name, place, mesh: mesh.value(), linear: here.linear, shift: here.shift });
+            let mesh = mesh as usize;
+            let name = node.name.as_deref().or_else(|| meshes.get(mesh)?.name.as_deref());
+            placed.push(Placed { name, shown_by: ShownBy::Node(number), mesh, linear, shift });
         }
-        open.extend(node.children.iter().flatten().rev().map(|child| (child.value(), here)));
+        open.push(Level { left: node.children.iter(), parent: Affine { linear, shift } });
     }
     Ok(placed)
 }
 
-/// The shown scene's nodes; without a scene, the nodes that are nobody's child.
-fn roots(root: &json::Root) -> Vec<usize> {
-    let shown = root.scene.map_or(0, |scene| scene.value());
-    if let Some(scene) = root.scenes.get(shown) {
-        return scene.nodes.iter().map(|node| node.value()).collect();
-    }
-    let mut is_child = vec![false; root.nodes.len()];
-    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
-        if let Some(is_child) = is_child.get_mut(child.value()) {
-            *is_child = true;
+impl Tree {
+    /// The shown scene's nodes; without a scene, the nodes that are nobody's child.
+    fn roots(&self) -> Result<Cow<'_, [u32]>, GltfError> {
+        let shown = self.scene.unwrap_or(0) as usize;
+        if let Some(scene) = self.scenes.get(shown) {
+            return Ok(Cow::Borrowed(&scene.nodes));
         }
+        if self.scene.is_some() {
+            return Err(GltfError::at("scene", missing("scene", shown, self.scenes.len())));
+        }
+        let mut is_child = vec![false; self.nodes.len()];
+        for child in self.nodes.iter().flat_map(|Slot(node)| node).flat_map(|node| &node.children) {
+            if let Some(is_child) = is_child.get_mut(*child as usize) {
+                *is_child = true;
+            }
+        }
+        Ok((0..self.nodes.len()).filter(|&node| !is_child[node]).map(|node| node as u32).collect())
     }
-    (0..root.nodes.len()).filter(|&node| !is_child[node]).collect()
 }
 
 /// A file that has meshes and no nodes shows nothing by the standard; whoever gives it as a city means the meshes.
-fn lone_meshes(root: &json::Root) -> Vec<Placed> {
-    let place = |(index, mesh): (usize, &json::Mesh)| Placed {
-        name: mesh.name.clone().unwrap_or_else(|| format!("mesh {index}")),
-        place: format!("meshes[{index}]"),
-        mesh: index,
-        linear: IDENTITY.linear,
-        shift: IDENTITY.shift,
-    };
-    root.meshes.iter().enumerate().map(place).collect()
+fn lone_meshes(meshes: &[json::Mesh]) -> Vec<Placed<'_>> {
+    let Affine { linear, shift } = IDENTITY;
+    let placed = meshes.iter().enumerate().map(|(mesh, shown)| Placed {
+        name: shown.name.as_deref(),
+        shown_by: ShownBy::Itself,
+        mesh,
+        linear,
+        shift,
+    });
+    placed.collect()
 }
 
 pub(super) fn missing(what: &'static str, index: usize, count: usize) -> GltfProblem {
     GltfProblem::Missing { what, index: index as u64, count }
 }
 
-impl RawNode {
+impl Node {
     fn affine(&self) -> Result<Affine, GltfProblem> {
         if let Some(m) = &self.matrix {
             if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
@@ -174,5 +275,23 @@ impl Affine {
     /// This transform, then the parent's.
     fn after(&self, parent: &Affine) -> Affine {
         Affine { linear: parent.linear * self.linear, shift: parent.linear * self.shift + parent.shift }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_node_that_shows_nothing_takes_eight_bytes() {
+        assert_eq!(size_of::<Slot>(), 8);
+        let tree = read(br#"{"nodes": [{}, {"name": "n", "rotation": [0, 0, 0, 0]}, {"mesh": 0}]}"#).unwrap();
+        let is_kept: Vec<bool> = tree.nodes.iter().map(|Slot(node)| node.is_some()).collect();
+        assert_eq!(is_kept, [false, false, true]);
+    }
+
+    #[test]
+    fn what_is_only_looked_at_takes_no_memory() {
+        assert_eq!(size_of::<CheckedPrimitive>() + size_of::<CheckedReference>(), 3);
     }
 }

@@ -357,7 +357,7 @@ fn refuses_sparse_accessors_that_lie() {
     }
     let mut endless = sparse(false);
     endless.json["accessors"][0]["count"] = json!(4_000_000_000_u64);
-    assert!(endless.read().unwrap_err().to_string().contains("no bufferView"));
+    assert!(matches!(endless.read().unwrap_err().problem, GltfProblem::TooLarge { .. }));
 }
 
 #[test]
@@ -405,6 +405,97 @@ fn a_small_file_that_shows_one_mesh_too_often_is_refused() {
         json["nodes"] = (0..100).map(|_| json!({"mesh": 0})).collect();
     });
     assert!(matches!(scene.read().unwrap_err().problem, GltfProblem::TooLarge { .. }));
+}
+
+/// `count` zeros as corners, but for the first.
+fn zeros(count: u64) -> Scene {
+    Scene::changed(|json| {
+        json["accessors"][0]["sparse"] = json!({
+            "count": 1,
+            "indices": {"bufferView": 1, "componentType": 5123},
+            "values": {"bufferView": 0}
+        });
+        json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+        json["accessors"][0]["count"] = json!(count);
+    })
+}
+
+#[test]
+fn a_count_is_bounded_by_the_bytes_that_are_there() {
+    assert!(zeros(60_000).read().is_ok());
+    for count in [1 << 17, 1 << 24, 1 << 26, 1 << 40, u64::MAX] {
+        let error = zeros(count).read().unwrap_err();
+        assert!(matches!(error.problem, GltfProblem::TooLarge { .. }), "{count}: {error}");
+    }
+    let mut of_indices = zeros(4);
+    of_indices.json["accessors"][1] = of_indices.json["accessors"][0].clone();
+    of_indices.json["accessors"][1]["type"] = json!("SCALAR");
+    of_indices.json["accessors"][1]["componentType"] = json!(5125);
+    of_indices.json["accessors"][1]["count"] = json!(1 << 30);
+    assert!(matches!(of_indices.read().unwrap_err().problem, GltfProblem::TooLarge { .. }));
+}
+
+#[test]
+fn a_count_times_nodes_or_primitives_is_bounded_by_the_bytes_that_are_there() {
+    let mut nodes = zeros(20_000);
+    nodes.json["scenes"][0]["nodes"] = (0..1000).collect();
+    nodes.json["nodes"] = (0..1000).map(|_| json!({"mesh": 0})).collect();
+    assert!(matches!(nodes.read().unwrap_err().problem, GltfProblem::TooLarge { .. }));
+    let mut primitives = zeros(20_000);
+    let primitive = primitives.json["meshes"][0]["primitives"][0].clone();
+    primitives.json["meshes"][0]["primitives"] = (0..1000).map(|_| primitive.clone()).collect();
+    assert!(matches!(primitives.read().unwrap_err().problem, GltfProblem::TooLarge { .. }));
+}
+
+#[test]
+fn a_name_times_nodes_is_bounded_by_the_bytes_that_are_there() {
+    let scene = Scene::changed(|json| {
+        json["meshes"][0]["name"] = json!("n".repeat(1 << 20));
+        json["scenes"][0]["nodes"] = (0..3000).collect();
+        json["nodes"] = (0..3000).map(|_| json!({"mesh": 0})).collect();
+    });
+    assert!(matches!(scene.read().unwrap_err().problem, GltfProblem::TooLarge { .. }));
+}
+
+#[test]
+fn a_file_that_many_buffers_name_is_held_once() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.bin"), vec![0; 1 << 16]).unwrap();
+    let mut buffers = Buffers::new(None, folder.path());
+    for index in 0..1000 {
+        let uri = format!("{}a.bin", "./".repeat(index % 7));
+        let buffer = serde_json::from_value(json!({"byteLength": 1 + 60 * index, "uri": uri})).unwrap();
+        buffers.load(index, &buffer).unwrap();
+        assert!(buffers.bytes(index).unwrap().len() > 60 * index);
+    }
+    assert!(buffers.bytes_beside() <= 2 << 16, "{}", buffers.bytes_beside());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_buffer_that_is_a_pipe_or_a_device_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(folder.path().join("pipe")).status().unwrap().success());
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("device")).unwrap();
+    for name in ["pipe", "device"] {
+        let scene = Scene::changed(|json| json["buffers"][0]["uri"] = json!(name));
+        let error = read_gltf(scene.json.to_string().as_bytes(), folder.path()).unwrap_err();
+        assert!(error.to_string().contains(&format!("a {name}")), "{error}");
+    }
+}
+
+#[test]
+fn a_scene_that_does_not_exist_is_refused() {
+    let (place, problem) = refused(|json| json["scene"] = json!(7));
+    assert_eq!((place.as_str(), problem), ("scene", GltfProblem::Missing { what: "scene", index: 7, count: 1 }));
+}
+
+#[test]
+fn what_would_steer_a_terminal_is_written_out_in_messages() {
+    let (_, problem) = refused(|json| json["extensionsRequired"] = json!(["\u{1b}[2J"]));
+    assert!(problem.to_string().contains("\\u{1b}[2J"), "{problem}");
+    let (_, problem) = refused(|json| json["buffers"][0]["uri"] = json!("\u{1b}[2J.bin"));
+    assert!(problem.to_string().contains("\\u{1b}[2J"), "{problem}");
 }
 
 #[test]

@@ -59,7 +59,7 @@ const REFUSED_MODELS: [(&str, &[&str]); 57] = [
     ("binary/keypoint_nan", &["images.bin", "keypoint 0 of image 10", "a finite position"]),
     ("binary/point_id_twice", &["points3D.bin", "point 5", "ids that differ", "this id twice"]),
     ("binary/point_nan", &["points3D.bin", "point 5", "a finite position", "NaN"]),
-    ("binary/point_error_nan", &["points3D.bin", "point 5", "an error that is a number", "NaN"]),
+    ("binary/point_error_nan", &["points3D.bin", "point 5", "a finite error", "NaN"]),
     ("binary/track_of_missing_image", &["points3D.bin", "track of point 5", "images of the model", "image 12"]),
     ("binary/track_of_missing_keypoint", &["track of point 5", "one of the 3 keypoints of image 11", "keypoint 3"]),
     ("binary/no_points", &["the reconstruction has no points"]),

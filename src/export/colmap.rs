@@ -7,9 +7,10 @@ use std::path::Path;
 use super::ExportError;
 use super::file::write_file;
 use crate::format::colmap::{
-    CAMERA_MODELS, CameraRecord, Encoding, ImageHead, NO_POINT, ObservationRecord, PointHead, cameras_file,
-    frames_file, rigs_file, write_images, write_points,
+    CAMERA_MODELS, CameraRecord, Encoding, ImageHead, NO_POINT, ObservationRecord, PointHead, RigRecord, cameras_file,
+    can_be_named, frames_file, rigs_file, write_images, write_points,
 };
+use crate::format::escaped;
 use crate::reconstruction::{ColmapParts, PointIndex, Reconstruction};
 
 /// Writes `r`, in the frame in which it stands, into `folder` (made where missing): the encoding it came in, rigs and
@@ -76,17 +77,51 @@ fn check(folder: &Path, r: &Reconstruction) -> Result<(), ExportError> {
     let points = r.points.len();
     for image in &r.images {
         if image.camera.0 as usize >= r.cameras.len() {
-            return unfit("a camera for every image", format!("image {} without one", image.name));
+            return unfit("a camera for every image", format!("image {} without one", image.id));
         }
         let is_missing = |point: PointIndex| point.0 as usize >= points;
         if image.observations.iter().any(|o| o.point.is_some_and(is_missing)) {
-            return unfit("keypoints of points that are there", format!("others in image {}", image.name));
+            return unfit("keypoints of points that are there", format!("others in image {}", image.id));
         }
     }
     if r.track_elements.iter().any(|(image, _)| image.0 as usize >= r.images.len()) {
         return unfit("tracks over images that are there", "others".into());
     }
-    Ok(())
+    let encoding = r.colmap.as_ref().map_or(Encoding::Binary, |parts| parts.encoding);
+    if let Some(image) = r.images.iter().find(|image| !can_be_named(encoding, image.name.as_bytes())) {
+        let got = format!("`{}` of image {}", escaped(&image.name), image.id);
+        return unfit("names of images that the encoding can hold; rename the image", got);
+    }
+    match first_not_finite(r) {
+        Some(object) => unfit("finite coordinates; the scale of the move is too large for this reconstruction", object),
+        None => Ok(()),
+    }
+}
+
+/// The first point, image, frame or rig that is nowhere, as when a move has carried it beyond the largest numbers.
+fn first_not_finite(r: &Reconstruction) -> Option<String> {
+    let is_finite = |place: &[f64]| place.iter().all(|v| v.is_finite());
+    if let Some(object) = first_point_not_finite(r) {
+        return Some(object);
+    }
+    if let Some(image) = r.images.iter().find(|image| !is_finite(image.cam_from_sfm_translation.as_slice())) {
+        return Some(format!("image {} at infinity", image.id));
+    }
+    let parts = r.colmap.as_ref()?;
+    if let Some(frame) = parts.frames.iter().flatten().find(|frame| !is_finite(&frame.rig_from_world.translation)) {
+        return Some(format!("frame {} at infinity", frame.id));
+    }
+    let mut rigs = parts.rigs.iter().flatten();
+    let is_torn =
+        |rig: &&RigRecord| rig.others.iter().flat_map(|(_, pose)| pose).any(|pose| !is_finite(&pose.translation));
+    rigs.find(is_torn).map(|rig| format!("a sensor of rig {} at infinity", rig.id))
+}
+
+/// The first point that is nowhere.
+pub(super) fn first_point_not_finite(r: &Reconstruction) -> Option<String> {
+    let index = r.points.iter().position(|point| !point.iter().all(|v| v.is_finite()))?;
+    let id = r.point_ids.get(index).map_or(index as u64, |id| *id);
+    Some(format!("point {id} at infinity"))
 }
 
 fn camera_records(r: &Reconstruction) -> Vec<CameraRecord> {

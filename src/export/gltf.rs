@@ -212,7 +212,8 @@ fn points_node(glb: &mut Glb, placed: &Placed<'_>) -> Option<Index<Node>> {
 
 /// One node a photograph, named as it is, so that a viewer tells which one a frustum belongs to.
 fn cameras_node(glb: &mut Glb, placed: &Placed<'_>, depth: f64) -> Option<Index<Node>> {
-    if placed.reconstruction.images.is_empty() {
+    // Beyond single precision a frustum has no corners.
+    if placed.reconstruction.images.is_empty() || !(depth as f32).is_finite() {
         return None;
     }
     let material = glb.material("cameras", CAMERA_COLOR, false);

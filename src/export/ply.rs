@@ -4,12 +4,17 @@ use std::io::{BufWriter, Result, Write};
 use std::path::Path;
 
 use super::ExportError;
+use super::colmap::first_point_not_finite;
 use super::file::write_file;
 use crate::reconstruction::Reconstruction;
 
 /// Writes the points, in the frame in which they stand: binary little-endian, `double` coordinates, normals (`double`)
 /// and colours (`uchar`) where there are any.
 pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), ExportError> {
+    if let Some(got) = first_point_not_finite(r) {
+        let expected = "finite coordinates; the scale of the move is too large for this reconstruction";
+        return Err(ExportError::Unfit { path: path.into(), expected, got });
+    }
     let count = r.points.len();
     let (has_normals, has_colors) = (r.normals.len() == count, r.colors.len() == count);
     write_file(path, |out| {

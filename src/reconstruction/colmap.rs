@@ -87,6 +87,10 @@ pub(super) fn reconstruction(folder: &Path, model: Model) -> Result<Reconstructi
     let frame_poses = FramePoses::new(&check, model.rigs.as_deref(), model.frames.as_deref())?;
     let camera_index = check.index("cameras", "camera", model.cameras.iter().map(|c| c.id.into()))?;
     let image_index = check.index("images", "image", model.images.iter().map(|i| i.id.into()))?;
+    if model.points.ids.contains(&NO_POINT) {
+        let got = "18446744073709551615, which marks keypoints without a point";
+        return Err(check.fault("points3D", format!("point {NO_POINT}"), "an id below 2^64 - 1", got));
+    }
     let point_index = check.index("points3D", "point", model.points.ids.iter().copied())?;
     let camera_ids = model.cameras.iter().map(|c| c.id).collect();
     let cameras = model.cameras.into_iter().map(|record| camera(&check, record)).collect::<Result<_, _>>()?;
@@ -123,8 +127,13 @@ fn camera(check: &Checker, record: CameraRecord) -> Result<Camera, Reconstructio
     }
     let camera = Camera { model, width_px: record.width, height_px: record.height, params: record.params };
     match camera.focal_px() {
-        Some(focal_px) if focal_px > 0.0 => Ok(camera),
-        _ => Err(check.fault("cameras", object(), "a focal length above zero", format!("{:?}", camera.params))),
+        Some(focal_px) if focal_px > 0.0 && focal_px.is_finite() => Ok(camera),
+        _ => Err(check.fault(
+            "cameras",
+            object(),
+            "a focal length above zero, and finite",
+            format!("{:?}", camera.params),
+        )),
     }
 }
 
@@ -221,11 +230,11 @@ fn image(
 }
 
 fn check_points(check: &mut Checker, points: &PointRecords) -> Result<(), ReconstructionError> {
-    let is_bad = |i: &usize| !points.positions[*i].iter().all(|v| v.is_finite()) || points.errors[*i].is_nan();
+    let is_bad = |i: &usize| !points.positions[*i].iter().all(|v| v.is_finite()) || !points.errors[*i].is_finite();
     if let Some(bad) = (0..points.ids.len()).find(is_bad) {
         let got = format!("{:?} with error {}", points.positions[bad], points.errors[bad]);
         let object = format!("point {}", points.ids[bad]);
-        return Err(check.fault("points3D", object, "a finite position and an error that is a number", got));
+        return Err(check.fault("points3D", object, "a finite position and a finite error", got));
     }
     let is_alone = |ends: &&[u32]| ends[0] == ends[1];
     if let Some(first) = points.track_starts.windows(2).position(|ends| is_alone(&ends)) {

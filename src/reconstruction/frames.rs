@@ -1,10 +1,11 @@
 //! What rigs and frames say of the images' poses.
 
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Translation3};
 
 use super::ReconstructionError;
 use super::colmap::Checker;
 use super::ids::IdIndex;
+use super::transform::unit_quaternion;
 use crate::format::colmap::{FrameRecord, PoseRecord, RigRecord, SENSOR_CAMERA, SensorRecord};
 
 /// How far (radians, and share of the translation's length) an image's pose may be from its frame's and still count as
@@ -78,7 +79,7 @@ fn pose_by_rig(rig: &RigRecord, sensor: SensorRecord, frame: &FrameRecord) -> Op
 }
 
 fn isometry(pose: &PoseRecord) -> Isometry3<f64> {
-    let [w, x, y, z] = pose.quaternion_wxyz;
-    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+    // Checked before: every pose has a direction.
+    let rotation = unit_quaternion(&pose.quaternion_wxyz).unwrap_or_default();
     Isometry3::from_parts(Translation3::from(pose.translation), rotation)
 }

@@ -26,12 +26,10 @@ impl IdIndex {
         if count >= NONE as usize {
             return Err(IdFault::TooMany);
         }
-        let table_length = ids.clone().max().and_then(|max| usize::try_from(max).ok()?.checked_add(1)).unwrap_or(0);
-        let in_table = table_length / ENTRIES_PER_RECORD <= count;
-        let mut index = if in_table {
-            IdIndex::Table(vec![NONE; table_length])
-        } else {
-            IdIndex::Map(HashMap::with_capacity(count))
+        let largest = ids.clone().max().map_or(Some(0), |id| usize::try_from(id).ok());
+        let mut index = match largest {
+            Some(largest) if largest / ENTRIES_PER_RECORD <= count => IdIndex::Table(vec![NONE; largest + 1]),
+            _ => IdIndex::Map(HashMap::with_capacity(count)),
         };
         for (record, id) in ids.enumerate() {
             let before = match &mut index {
@@ -58,13 +56,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finds_records_by_near_and_by_far_ids() {
-        for ids in [vec![3, 1, 2], vec![u64::MAX - 1, 0, 7], vec![]] {
+    fn finds_records_by_near_and_by_far_ids_up_to_the_largest() {
+        for ids in [vec![3, 1, 2], vec![u64::MAX - 1, 0, 7], vec![u64::MAX], vec![0, u64::MAX, u64::MAX - 1], vec![]] {
             let index = IdIndex::new(ids.iter().copied()).ok().unwrap();
             for (record, id) in ids.iter().enumerate() {
                 assert_eq!(index.get(*id), Some(record as u32));
             }
-            assert_eq!((index.get(5), index.get(u64::MAX)), (None, None));
+            assert_eq!((index.get(5), index.get(u64::MAX - 7)), (None, None));
         }
     }
 

@@ -71,10 +71,23 @@ impl Image {
 /// Lengths of quaternions below this have no direction that could be told from rounding.
 const LEAST_QUATERNION: f64 = 1e-9;
 
+/// Up to here the sum of four squares is far from overflowing.
+const LARGEST_QUATERNION: f64 = 1e100;
+
+/// A quaternion of any length made one of unit length; `None` where it is zero or not finite.
+pub(super) fn unit_quaternion(quaternion_wxyz: &[f64; 4]) -> Option<UnitQuaternion<f64>> {
+    let largest = quaternion_wxyz.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+    let is_finite = quaternion_wxyz.iter().all(|v| v.is_finite());
+    // The squares of the largest numbers would overflow, so that quaternions are brought to about one first. Those of about
+    // one are left as they are: their bits stand in files.
+    let unit = if largest < LARGEST_QUATERNION { 1.0 } else { largest };
+    let [w, x, y, z] = quaternion_wxyz.map(|v| v / unit);
+    if is_finite { UnitQuaternion::try_new(Quaternion::new(w, x, y, z), LEAST_QUATERNION) } else { None }
+}
+
 /// The rotation of a quaternion of any length; `None` where it is zero or not finite.
-pub(super) fn rotation_of([w, x, y, z]: &[f64; 4]) -> Option<Rotation3<f64>> {
-    let unit = UnitQuaternion::try_new(Quaternion::new(*w, *x, *y, *z), LEAST_QUATERNION)?;
-    unit.coords.iter().all(|v| v.is_finite()).then(|| unit.to_rotation_matrix())
+pub(super) fn rotation_of(quaternion_wxyz: &[f64; 4]) -> Option<Rotation3<f64>> {
+    unit_quaternion(quaternion_wxyz).map(|unit| unit.to_rotation_matrix())
 }
 
 fn quaternion_of(rotation: &Rotation3<f64>) -> [f64; 4] {
@@ -85,8 +98,8 @@ fn quaternion_of(rotation: &Rotation3<f64>) -> [f64; 4] {
 /// With `x_city = s R x_sfm + t`, a camera's frame grows by s too, so that its axes stay orthonormal:
 /// `x_cam' = R_cam R^T x_city + (s t_cam - R_cam R^T t)`.
 fn pose_in_city(cam_from_sfm: &PoseRecord, city_from_sfm: &Similarity) -> PoseRecord {
-    let [w, x, y, z] = cam_from_sfm.quaternion_wxyz;
-    let cam_from_sfm_rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+    // Reading has refused quaternions without direction.
+    let cam_from_sfm_rotation = unit_quaternion(&cam_from_sfm.quaternion_wxyz).unwrap_or_default();
     let city_from_sfm_rotation = UnitQuaternion::from_rotation_matrix(&city_from_sfm.rotation);
     let q = cam_from_sfm_rotation * city_from_sfm_rotation.inverse();
     let translation = city_from_sfm.scale * Vector3::from(cam_from_sfm.translation) - q * city_from_sfm.translation;
@@ -140,5 +153,14 @@ mod tests {
         assert_eq!(rotation_of(&[f64::NAN, 0.0, 0.0, 1.0]), None);
         assert_eq!(rotation_of(&[f64::INFINITY, 0.0, 0.0, 1.0]), None);
         assert_eq!(rotation_of(&[-2.0, 0.0, 0.0, 0.0]), Some(Rotation3::identity()));
+    }
+
+    #[test]
+    fn the_largest_quaternions_have_their_rotation() {
+        let turned = rotation_of(&[0.0, 1e308, -1e308, 0.0]).unwrap();
+        assert_eq!(turned, rotation_of(&[0.0, 1.0, -1.0, 0.0]).unwrap());
+        let most = rotation_of(&[f64::MAX; 4]).unwrap();
+        assert_eq!(most, rotation_of(&[1.0; 4]).unwrap());
+        assert_eq!(rotation_of(&[1e308, f64::INFINITY, 0.0, 0.0]), None);
     }
 }

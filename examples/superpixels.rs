@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use cityweld::city::{CityModel, CityOptions, FacetId, read_city};
 use cityweld::geometry::{Matrix3, Point3, Similarity, Vector3};
-use cityweld::imagery::{LabelMap, SuperpixelOptions, cut_superpixels};
+use cityweld::imagery::{LabelMap, Labels, SuperpixelOptions, cut_superpixels};
 use cityweld::planes::{CityPlanes, PlaneId, city_planes};
 use cityweld::reconstruction::{Image, Reconstruction, read_reconstruction};
 use rayon::prelude::*;
@@ -145,8 +145,7 @@ fn tallies(scene: &Path, image: &Image, planes: &[Option<PlaneId>]) -> Result<Ta
     let with_points = image.observations.iter().filter(|o| o.point.is_some());
     let keypoints: Vec<(f64, f64)> = with_points.map(|o| (o.x_px, o.y_px)).collect();
     let cut = |keypoints: &[(f64, f64)]| cut_superpixels(&photo, keypoints, &SuperpixelOptions::default());
-    let ids = labels.as_raw().iter().map(|&id| u32::from(id)).collect();
-    let labels = LabelMap { width: labels.width(), height: labels.height(), labels: ids };
+    let labels = LabelMap { width: labels.width(), height: labels.height(), labels: Labels::U16(labels.into_raw()) };
     let [superpixels, colours, labels] = [cut(&keypoints), cut(&[]), labels].map(|map| tally(&map, size, &seen));
     Ok(Tallies {
         superpixels,
@@ -159,7 +158,7 @@ fn tallies(scene: &Path, image: &Image, planes: &[Option<PlaneId>]) -> Result<Ta
 
 /// Observations without a superpixel (label 0) do not count.
 fn tally(map: &LabelMap, size: (u32, u32), seen: &[(f64, f64, PlaneId)]) -> Tally {
-    let mut ids: Vec<u32> = map.labels.iter().copied().filter(|&id| id != 0).collect();
+    let mut ids: Vec<u32> = map.labels.iter().filter(|&id| id != 0).collect();
     ids.sort_unstable();
     ids.dedup();
     let mut planes_in: HashMap<u32, HashMap<PlaneId, usize>> = HashMap::new();
@@ -182,7 +181,7 @@ fn grid((width, height): (u32, u32), cells: usize) -> LabelMap {
         let (x, y) = (i % width, i / width);
         1 + y * rows / height * columns + x * columns / width
     });
-    LabelMap { width, height, labels: labels.collect() }
+    LabelMap { width, height, labels: Labels::U32(labels.collect()) }
 }
 
 /// For each point the plane of the facet nearest to it under the truth.

@@ -10,7 +10,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("format", &["geometry"]),
     ("city", &["geometry", "format"]),
     ("reconstruction", &["geometry", "format"]),
-    ("imagery", &["geometry", "reconstruction"]),
+    ("imagery", &["geometry", "format", "reconstruction"]),
     ("solvers", &["geometry"]),
     ("robust", &["geometry", "solvers"]),
     ("planes", &["geometry", "city", "reconstruction", "imagery", "robust"]),

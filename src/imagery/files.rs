@@ -1,15 +1,37 @@
 //! Finds the file of an image, and reads and decodes it within bounds.
 
-use std::io::Cursor;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
 use std::path::{Component, Path, PathBuf};
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
 
 use super::ImageryError;
+use super::size::{most_pixels, size_in_camera};
+use crate::format::file::{is_there, open_regular, read_at_most};
 
 /// Largest file and largest decoded picture, bytes. 512 MiB hold 170 megapixels of colour, more than any camera has;
 /// what claims more is taken for a damaged or hostile header.
 const MEMORY_LIMIT_BYTES: u64 = 512 << 20;
+
+/// Four channels of 16 bits.
+const MOST_BYTES_OF_A_PIXEL: u64 = 8;
+
+/// What may stand in a file beside its pixels: previews, profiles, text.
+const METADATA_BYTES: u64 = 16 << 20;
+
+/// A block of 8 x 8 pixels takes a bit at least, its DC difference; of colours one may have all pixels across and another all
+/// down, each a quarter of the other way (ITU T.81, A.1.1 and F.1.2.1).
+const MOST_PIXELS_OF_A_JPEG_BYTE: u64 = 8 * 64 * 4;
+
+/// Deflate writes at most 1032 bytes for one (RFC 1951: 258 in two bits), and eight pixels may share a byte.
+const MOST_PIXELS_OF_A_PNG_BYTE: u64 = 1032 * 8;
+
+/// While a picture is decoded: coefficients of a progressive JPEG, two bytes in each of three channels; or the copy in eight
+/// bits of a picture that has more.
+const BESIDE_A_PIXEL: u64 = 6;
+
+/// As every JPEG begins.
+const JPEG_START: [u8; 3] = [0xFF, 0xD8, 0xFF];
 
 /// Extensions of photographs, in the order in which they are tried after the name itself.
 const PHOTO_EXTENSIONS: [&str; 6] = ["jpg", "JPG", "jpeg", "JPEG", "png", "PNG"];
@@ -18,7 +40,7 @@ const LABEL_EXTENSIONS: [&str; 2] = ["png", "PNG"];
 /// The file of a photograph: the image's own name, or the same stem with another extension or case.
 pub(super) fn find_photo(folder: &Path, image_name: &str) -> Option<PathBuf> {
     let named = path_inside(folder, image_name)?;
-    if named.is_file() {
+    if is_there(&named) {
         return Some(named);
     }
     with_extension_of(&named, &PHOTO_EXTENSIONS)
@@ -33,7 +55,7 @@ pub(super) fn find_labels(folder: &Path, image_name: &str) -> Option<PathBuf> {
 /// Reconstructions made on Windows may have backslashes between folders.
 fn path_inside(folder: &Path, image_name: &str) -> Option<PathBuf> {
     let plain = folder.join(image_name);
-    let name = if image_name.contains('\\') && !plain.is_file() {
+    let name = if image_name.contains('\\') && !is_there(&plain) {
         image_name.replace('\\', "/")
     } else {
         image_name.to_owned()
@@ -43,50 +65,109 @@ fn path_inside(folder: &Path, image_name: &str) -> Option<PathBuf> {
 }
 
 fn with_extension_of(named: &Path, extensions: &[&str]) -> Option<PathBuf> {
-    extensions.iter().map(|extension| named.with_extension(extension)).find(|path| path.is_file())
+    extensions.iter().map(|extension| named.with_extension(extension)).find(|path| is_there(path))
+}
+
+/// What a file should hold.
+#[derive(Clone, Copy)]
+pub(super) struct Expected {
+    pub noun: &'static str,
+    pub format: &'static str,
+}
+
+/// A picture whose header has been read and fits its camera; not decoded yet.
+pub(super) struct Picture<'p> {
+    pub path: &'p Path,
+    expected: Expected,
+    /// Width and height, pixels.
+    pub size: (u32, u32),
+    /// Width and height of the image to which observations refer.
+    pub image_size: (u32, u32),
+    decoder: Box<dyn ImageDecoder>,
+    truncated: bool,
 }
 
 /// A decoded picture.
-pub(super) struct Picture {
+pub(super) struct Decoded {
     pub pixels: DynamicImage,
     /// A JPEG whose end marker is missing: the rest of the picture was filled in by the decoder.
     pub truncated: bool,
 }
 
-/// Reads and decodes a picture, JPEG or PNG by content. The EXIF orientation is not applied: reconstructions refer to
-/// the pixels as they are stored.
-pub(super) fn read_picture(path: &Path, noun: &'static str, expected: &'static str) -> Result<Picture, ImageryError> {
-    let bytes = read_bounded(path, noun)?;
-    let undecodable = |reason: String| ImageryError::Undecodable { noun, reason, expected, path: path.to_path_buf() };
-    if bytes.is_empty() {
-        return Err(undecodable("the file is empty".to_owned()));
+/// Opens a picture, JPEG or PNG by content, and compares its header with the size of its camera, if there is one. The EXIF
+/// orientation is not applied: reconstructions refer to the pixels as they are stored.
+pub(super) fn open_picture(
+    path: &Path,
+    expected: Expected,
+    camera: Option<(u32, u32)>,
+) -> Result<Picture<'_>, ImageryError> {
+    let noun = expected.noun;
+    let unreadable =
+        |error: io::Error| ImageryError::Unreadable { noun, reason: error.to_string(), path: path.to_path_buf() };
+    let fault = |reason: String| undecodable(path, expected, reason);
+    let mut file = open_regular(path).map_err(unreadable)?;
+    let file_bytes = file.metadata().map_err(unreadable)?.len();
+    if file_bytes == 0 {
+        return Err(fault("the file is empty".to_owned()));
     }
-    let mut reader =
-        ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|error| undecodable(error.to_string()))?;
+    // As much as the largest picture that is taken would have uncompressed.
+    let limit = MEMORY_LIMIT_BYTES.min(most_pixels(camera) * MOST_BYTES_OF_A_PIXEL + METADATA_BYTES);
+    let mut truncated = false;
+    let mut start = [0; 3];
+    let is_jpeg = file.read_exact(&mut start).is_ok() && start == JPEG_START;
+    file.rewind().map_err(unreadable)?;
+    // A JPEG is read whole, as its decoder does; of a PNG no more than is decoded.
+    let bytes: Box<dyn BufReadSeek> = if is_jpeg {
+        let bytes = read_at_most(file, file_bytes, limit).map_err(unreadable)?;
+        truncated = lacks_jpeg_end(&bytes);
+        Box::new(Cursor::new(bytes))
+    } else {
+        Box::new(BufReader::new(file))
+    };
+    let mut reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| fault(error.to_string()))?;
     let mut limits = Limits::default();
-    limits.max_alloc = Some(MEMORY_LIMIT_BYTES);
+    limits.max_alloc = Some(limit);
     reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(|error| undecodable(reason_of(error)))?;
-    let (width, height) = decoder.dimensions();
+    let decoder = reader.into_decoder().map_err(|error| fault(reason_of(error)))?;
+    let size @ (width, height) = decoder.dimensions();
     if width == 0 || height == 0 {
-        return Err(undecodable(format!("it has {width} x {height} pixels")));
+        return Err(fault(format!("it has {width} x {height} pixels")));
     }
+    let image_size = size_in_camera(camera, size, noun, path)?;
     if decoder.total_bytes() > MEMORY_LIMIT_BYTES {
         let limit_mib = MEMORY_LIMIT_BYTES >> 20;
         return Err(ImageryError::TooLarge { noun, width, height, limit_mib, path: path.to_path_buf() });
     }
-    let pixels = DynamicImage::from_decoder(decoder).map_err(|error| undecodable(reason_of(error)))?;
-    Ok(Picture { pixels, truncated: lacks_jpeg_end(&bytes) })
+    let pixels = u64::from(width) * u64::from(height);
+    if file_bytes < pixels / if is_jpeg { MOST_PIXELS_OF_A_JPEG_BYTE } else { MOST_PIXELS_OF_A_PNG_BYTE } {
+        return Err(fault(format!("its {file_bytes} bytes cannot hold {width} x {height} pixels, it is cut off")));
+    }
+    Ok(Picture { path, expected, size, image_size, decoder: Box::new(decoder), truncated })
 }
 
-fn read_bounded(path: &Path, noun: &'static str) -> Result<Vec<u8>, ImageryError> {
-    let unreadable = |reason: String| ImageryError::Unreadable { noun, reason, path: path.to_path_buf() };
-    let size = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?.len();
-    if size > MEMORY_LIMIT_BYTES {
-        return Err(unreadable(format!("it has {size} bytes, at most {MEMORY_LIMIT_BYTES} are read")));
+impl Picture<'_> {
+    /// Memory that decoding takes at most, bytes.
+    pub fn decoding_bytes(&self) -> u64 {
+        let pixels = u64::from(self.size.0) * u64::from(self.size.1);
+        self.decoder.total_bytes() + pixels * BESIDE_A_PIXEL
     }
-    std::fs::read(path).map_err(|error| unreadable(error.to_string()))
+
+    pub fn decode(self) -> Result<Decoded, ImageryError> {
+        let (path, expected) = (self.path, self.expected);
+        let pixels = DynamicImage::from_decoder(self.decoder);
+        let pixels = pixels.map_err(|error| undecodable(path, expected, reason_of(error)))?;
+        Ok(Decoded { pixels, truncated: self.truncated })
+    }
 }
+
+fn undecodable(path: &Path, Expected { noun, format }: Expected, reason: String) -> ImageryError {
+    ImageryError::Undecodable { noun, reason, expected: format, path: path.to_path_buf() }
+}
+
+/// Where a decoder reads from.
+trait BufReadSeek: BufRead + Seek {}
+
+impl<T: BufRead + Seek> BufReadSeek for T {}
 
 /// The decoder's reason on one line.
 fn reason_of(error: ImageError) -> String {

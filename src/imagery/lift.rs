@@ -7,11 +7,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::files::{find_labels, find_photo};
-use super::labels::read_labels;
-use super::photos::read_photo;
+use super::labels::{decode_labels, open_labels};
+use super::memory::Budget;
+use super::photos::{decode_photo, open_photo};
+use super::size;
 use super::superpixels::{SuperpixelOptions, cut_superpixels};
 use super::{ImageryError, ImageryWarning, LabelMap, SuperpixelSource};
-use crate::geometry::Camera;
 use crate::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
 
 /// One superpixel of one image with the points whose observations fall on it.
@@ -35,6 +36,10 @@ pub struct LiftedSuperpixels {
     pub images_missing: usize,
 }
 
+/// Memory for pictures that are decoded at once. Chosen: nine photographs of 12 megapixels. One that asks for more is decoded
+/// while no other is.
+const DECODING_LIMIT_BYTES: u64 = 1 << 30;
+
 /// Finds, for every superpixel of every image, the points that are seen on it. `progress` is told how many images are
 /// done, of how many. Images that see no point are not looked for.
 pub fn lift_superpixels(
@@ -56,13 +61,14 @@ pub fn lift_superpixels_of(
 ) -> Result<LiftedSuperpixels, ImageryError> {
     let files = find_files(reconstruction, wanted, source)?;
     let done = AtomicUsize::new(0);
+    let memory = Budget::new(DECODING_LIMIT_BYTES);
     // Every image has its slot, so that neither the result nor the error that is told depends on the threads; a thread
     // holds one picture at a time.
     let lifted: Vec<Result<LiftedImage, ImageryError>> = files
         .found
         .par_iter()
         .map(|(index, path)| {
-            let lifted = lift_image(reconstruction, *index, path, source, options);
+            let lifted = lift_image(reconstruction, *index, path, source, options, &memory);
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, files.found.len());
             lifted
         })
@@ -133,23 +139,24 @@ fn lift_image(
     path: &Path,
     source: &SuperpixelSource,
     options: &SuperpixelOptions,
+    memory: &Budget,
 ) -> Result<LiftedImage, ImageryError> {
     let image = &reconstruction.images[index.0 as usize];
-    let camera = reconstruction.cameras.get(image.camera.0 as usize);
-    let (map, truncated, scaled, image_size) = match source {
-        SuperpixelSource::Labels(_) => {
-            let map = read_labels(path)?;
-            let image_size = size_in_camera(camera, (map.width, map.height), source.noun(), path)?;
-            // Labels of another size are the rule for segmenters, so that is nothing to warn of.
-            (map, false, None, image_size)
-        }
+    let camera = reconstruction.cameras.get(image.camera.0 as usize).and_then(size::of_camera);
+    let picture = match source {
+        SuperpixelSource::Labels(_) => open_labels(path, camera)?,
+        SuperpixelSource::Photos(_) => open_photo(path, camera)?,
+    };
+    let (found, image_size) = (picture.size, picture.image_size);
+    let _share = memory.take(picture.decoding_bytes());
+    let (map, truncated, scaled) = match source {
+        // Labels of another size are the rule for segmenters, so that is nothing to warn of.
+        SuperpixelSource::Labels(_) => (decode_labels(picture)?, false, None),
         SuperpixelSource::Photos(_) => {
-            let photo = read_photo(path)?;
-            let found = photo.pixels.dimensions();
-            let image_size = size_in_camera(camera, found, source.noun(), path)?;
+            let photo = decode_photo(picture)?;
             let scaled = (found != image_size).then_some((found, image_size));
             let keypoints = if options.by_keypoints { keypoints_in(image, image_size, found) } else { Vec::new() };
-            (cut_superpixels(&photo.pixels, &keypoints, options), photo.truncated, scaled, image_size)
+            (cut_superpixels(&photo.pixels, &keypoints, options), photo.truncated, scaled)
         }
     };
     let (superpixels, observations_outside) = points_on_labels(index, image, &map, image_size);
@@ -162,35 +169,6 @@ fn keypoints_in(image: &Image, image_size: (u32, u32), size: (u32, u32)) -> Vec<
     let (across, down) = (f64::from(size.0) / f64::from(image_size.0), f64::from(size.1) / f64::from(image_size.1));
     let observed = image.observations.iter().filter(|observation| observation.point.is_some());
     observed.map(|observation| (observation.x_px * across, observation.y_px * down)).collect()
-}
-
-/// Share by which the shape (width over height) of a picture may stray from its camera's: scaling rounds to whole pixels.
-const SHAPE_TOLERANCE: f64 = 0.02;
-
-/// The size of the image to which observations refer: the camera's, which must have the picture's shape. Pictures without
-/// a camera of a sensible size stand for themselves.
-fn size_in_camera(
-    camera: Option<&Camera>,
-    found: (u32, u32),
-    noun: &'static str,
-    path: &Path,
-) -> Result<(u32, u32), ImageryError> {
-    let size_of = |camera: &Camera| Some((camera.width_px.try_into().ok()?, camera.height_px.try_into().ok()?));
-    let Some(camera) = camera.and_then(size_of).filter(|&(width, height)| width > 0 && height > 0) else {
-        return Ok(found);
-    };
-    if same_shape(found, camera) {
-        return Ok(camera);
-    }
-    let turned = same_shape((found.1, found.0), camera);
-    Err(ImageryError::WrongShape { noun, found, camera, turned, path: path.to_path_buf() })
-}
-
-/// Whether one size is the other scaled, to within rounding by a pixel.
-fn same_shape(found: (u32, u32), camera: (u32, u32)) -> bool {
-    let [width, height, camera_width, camera_height] = [found.0, found.1, camera.0, camera.1].map(f64::from);
-    let stray = (width * camera_height / (height * camera_width)).ln().abs();
-    stray <= f64::max(SHAPE_TOLERANCE, 1.0 / width.min(height))
 }
 
 /// The superpixels that hold points, by label, and the number of observations outside the image.
@@ -248,7 +226,7 @@ fn gather_warnings(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::CameraModel;
+    use crate::geometry::{Camera, CameraModel};
     use crate::reconstruction::{CameraIndex, Observation};
 
     fn image(name: &str, observations: &[(f64, f64, Option<u32>)]) -> Image {
@@ -337,11 +315,5 @@ mod tests {
         let source = SuperpixelSource::Labels(folder.path().to_path_buf());
         let error = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap_err();
         assert!(matches!(error, ImageryError::WrongShape { turned: true, .. }), "{error}");
-    }
-
-    #[test]
-    fn shapes_agree_to_within_rounding() {
-        assert!(same_shape((31, 23), (960, 720)) && same_shape((3, 2), (960, 720)));
-        assert!(!same_shape((720, 960), (960, 720)) && !same_shape((512, 512), (960, 720)));
     }
 }

@@ -11,9 +11,10 @@ use std::collections::BinaryHeap;
 
 use image::RgbImage;
 
-use super::LabelMap;
 use super::colour::{Colour, LabImage, distance};
+use super::labels::index_at;
 use super::slic::{Cells, slic};
+use super::{LabelMap, Labels};
 
 /// How photographs are cut into superpixels.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,20 +44,20 @@ const BEHIND_BORDER_PX: usize = 1;
 pub fn cut_superpixels(photo: &RgbImage, keypoints: &[(f64, f64)], options: &SuperpixelOptions) -> LabelMap {
     let image = LabImage::of(photo);
     if image.pixels.is_empty() {
-        return LabelMap { width: photo.width(), height: photo.height(), labels: Vec::new() };
+        return LabelMap { width: photo.width(), height: photo.height(), labels: Labels::U8(Vec::new()) };
     }
     let cells = slic(&image);
     let mut merging = Merging::new(&image, &cells);
     merging.add_keypoints(&cells, &keypoint_pixels(&image, photo.dimensions(), keypoints));
     let labels = merging.down_to(options.count);
     let labels = cells.of_pixel.iter().map(|&cell| labels[cell as usize]).collect();
-    LabelMap { width: image.width as u32, height: image.height as u32, labels }
+    LabelMap { width: image.width as u32, height: image.height as u32, labels: Labels::U32(labels) }
 }
 
 /// Indices of the pixels under the keypoints; those outside are left out.
 fn keypoint_pixels(image: &LabImage, size: (u32, u32), keypoints: &[(f64, f64)]) -> Vec<usize> {
-    let indices = LabelMap { width: image.width as u32, height: image.height as u32, labels: Vec::new() };
-    keypoints.iter().filter_map(|&(x, y)| indices.index_at(x, y, size)).collect()
+    let size_here = (image.width as u32, image.height as u32);
+    keypoints.iter().filter_map(|&(x, y)| index_at(x, y, size, size_here)).collect()
 }
 
 /// A superpixel as it grows.
@@ -277,7 +278,7 @@ mod tests {
 
     fn labels_of(map: &LabelMap, keep: impl Fn(u32, u32) -> bool) -> BTreeSet<u32> {
         let indexed = map.labels.iter().enumerate();
-        indexed.filter(|(i, _)| keep(*i as u32 % map.width, *i as u32 / map.width)).map(|(_, &label)| label).collect()
+        indexed.filter(|(i, _)| keep(*i as u32 % map.width, *i as u32 / map.width)).map(|(_, label)| label).collect()
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Whole problems: the golden vectors, every scenario of points, lines and planes, degenerate and hostile input.
 
-use cityweld::geometry::{Matrix3, Rotation3, Vector3};
+use cityweld::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 use cityweld::solvers::primitives::{ObjectPrimitive, SensorPrimitive, rows_of};
 use cityweld::solvers::problem::{Refusal, parse_problem, solve_json};
 use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, pose, sample, up};
@@ -338,7 +338,21 @@ fn hostile_problems_are_refused_with_their_place() {
         (r#"{"kind":"rigid"}"#, "points is missing"),
         (r#"{"kind":"rigid","points":[[0,0]],"planes":[],"pairs":[]}"#, "points[0]"),
         (r#"{"kind":"rigid","points":[[0,0,"NaN"]],"planes":[],"pairs":[]}"#, "points[0]"),
-        (r#"{"kind":"rigid","points":[[0,0,1e999]],"planes":[],"pairs":[]}"#, "no JSON"),
+        (
+            r#"{"kind":"rigid","points":[[0,0,1e999]],"planes":[],"pairs":[]}"#,
+            "points[0] is [0,0,1e999]: number out of",
+        ),
+        (
+            r#"{"kind":"rigid","points":[[0,0,0],[0,-1e308,0]],"planes":[],"pairs":[]}"#,
+            "points[1] is -1e+308, expected",
+        ),
+        (
+            r#"{"kind":"rigid","points":[],"planes":[{"normal":[0,0,1],"offset":1.7e308}],"pairs":[]}"#,
+            "planes[0].offset is 1.7e+308",
+        ),
+        ("{\"kind\":\"\u{9b}2J\u{202e}\"}", "kind is \"\\u{9b}2J\\u{202e}\""),
+        (r#"{"kind":"rigid","points":"\u001b[2J","planes":[],"pairs":[]}"#, "points is missing or no list"),
+        ("{\"kind\":\"rigid\"", "no JSON"),
         (
             r#"{"kind":"rigid","points":[],"planes":[{"normal":[0,0,0],"offset":1}],"pairs":[]}"#,
             "planes[0].normal is zero",
@@ -380,6 +394,59 @@ fn coordinates_at_the_limits_of_numbers_leave_no_nan() {
             assert!(solution.object_from_sensor.translation.iter().all(|v| v.is_finite()));
         }
     }
+}
+
+/// Rows that a known pose satisfies: `points` points, each on one of `planes` planes in turn, or all on their own.
+fn many(chance: &mut Chance, points: usize, planes: usize) -> (Vec<Row>, Similarity) {
+    let pose = Similarity {
+        scale: 2.5,
+        rotation: Rotation3::from_euler_angles(0.3, -0.4, 1.9),
+        translation: Vector3::new(5.0, -7.0, 0.5),
+    };
+    let known: Vec<(Vector3<f64>, f64)> = (0..planes).map(|_| (chance.direction(), 10.0 * chance.normal())).collect();
+    let row = |i: usize| {
+        let (normal, offset) = known[i % planes];
+        let anywhere = 20.0 * chance.normal_vector();
+        let image = anywhere - normal * (normal.dot(&anywhere) + offset);
+        Row { point: pose.inverse().apply(&Point3::from(image)).coords, normal, offset }
+    };
+    ((0..points).map(row).collect(), pose)
+}
+
+#[test]
+fn tens_of_thousands_of_rows_have_their_one_pose() {
+    let mut chance = Chance::new(31);
+    for planes in [4, 50, 20_000] {
+        let (rows, pose) = many(&mut chance, 20_000, planes);
+        let doubled: Vec<Row> = rows.iter().chain(&rows).copied().collect();
+        for rows in [rows, doubled] {
+            let solutions = solve(&Sought::Similarity, &rows).unwrap();
+            assert_eq!(solutions.len(), 1, "{planes} planes");
+            let found = &solutions[0].object_from_sensor;
+            assert!((found.rotation.matrix() - pose.rotation.matrix()).norm() < 1e-9);
+            assert!((found.scale - pose.scale).abs() < 1e-9 && (found.translation - pose.translation).norm() < 1e-8);
+            assert!(solutions[0].residual < 1e-11 && solutions[0].condition > 1e-3);
+        }
+    }
+}
+
+#[test]
+fn many_rows_with_a_known_up_have_their_one_pose() {
+    let mut chance = Chance::new(32);
+    let (rows, pose) = many(&mut chance, 5_000, 5_000);
+    let up_in_sensor = pose.rotation.inverse() * Vector3::z();
+    let sought = Sought::UprightSimilarity(Up::new(&up_in_sensor, &Vector3::z()).unwrap());
+    let solutions = solve(&sought, &rows).unwrap();
+    assert_eq!(solutions.len(), 1);
+    assert!((solutions[0].object_from_sensor.rotation.matrix() - pose.rotation.matrix()).norm() < 1e-9);
+}
+
+#[test]
+fn many_rows_that_no_pose_satisfies_have_none() {
+    let mut chance = Chance::new(33);
+    let (mut rows, _) = many(&mut chance, 5_000, 30);
+    rows[4_000].offset += 0.1;
+    assert_eq!(solve(&Sought::Similarity, &rows).unwrap(), []);
 }
 
 // ---- what must not move an answer, and what must not spoil one

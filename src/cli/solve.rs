@@ -1,7 +1,8 @@
 //! `cityweld solve PROBLEM.json`: all poses of one point-to-plane problem.
 
-use cityweld::solvers::problem::{Refusal, answer_json, solve_json};
-use std::io::{Read, Write};
+use cityweld::format::file::{read_at_most, read_regular};
+use cityweld::solvers::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
+use std::io::Write;
 
 /// Solves the problem in a file (`-`: standard input) and prints the answer; returns the exit status: 0 an answer, 1
 /// degenerate, 2 ill-formed or unreadable.
@@ -24,10 +25,9 @@ pub fn run(path: &str) -> u8 {
 }
 
 fn read(path: &str) -> std::io::Result<String> {
-    if path != "-" {
-        return std::fs::read_to_string(path);
-    }
-    let mut text = String::new();
-    std::io::stdin().read_to_string(&mut text)?;
-    Ok(text)
+    let bytes = match path {
+        "-" => read_at_most(std::io::stdin().lock(), 0, LARGEST_PROBLEM_BYTES)?,
+        path => read_regular(path.as_ref(), LARGEST_PROBLEM_BYTES)?,
+    };
+    String::from_utf8(bytes).map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8"))
 }

@@ -19,6 +19,7 @@
 //! Tests       golden/degenerate.json; tests/solver_problems.rs
 //! ```
 
+use super::forms::reduced;
 use super::quadrics::Quadric;
 use super::quaternion::MONOMIALS;
 use super::singular::Singular;
@@ -33,6 +34,10 @@ pub const WEAK: f64 = 1e-3;
 
 /// Singular value, relative to the largest, below which the Macaulay matrix has lost a rank.
 const MACAULAY_RANK: f64 = 1e-12;
+
+/// More rows than this are brought to triangular form before their singular values are taken: those of few are more exact without
+/// it, those of many would take long.
+const MANY_ROWS: usize = 64;
 
 /// Why a problem has no isolated pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -81,7 +86,10 @@ pub(super) fn condition(sought: &Sought, images: &[Vector3<f64>], normals: &[Vec
 }
 
 fn ratio<const K: usize>(rows: impl Iterator<Item = [f64; K]>) -> f64 {
-    let rows: Vec<[f64; K]> = rows.collect();
+    let mut rows: Vec<[f64; K]> = rows.collect();
+    if rows.len() > MANY_ROWS {
+        rows = reduced(rows.into_iter());
+    }
     let singular = Singular::of(&rows);
     if rows.len() < K || !(singular.largest() > 0.0) { 0.0 } else { singular.smallest() / singular.largest() }
 }

@@ -20,16 +20,18 @@
 //! Degenerate  refused with the reason (`Degeneracy`); nothing that leaves here is NaN
 //! Scaling     units from 1e-12 to 1e12, coordinates to 1e7 times the spread (golden/hard.json)
 //! Source      mathematics.md sections 2, 10, 11, 12
-//! Cost        about a millisecond: it is made for single problems, not for loops; it allocates
+//! Cost        about a millisecond, and a few microseconds for each further row: it is made for single problems, not for loops;
+//!             it allocates
 //! Tests       tests/solver_problems.rs; tools/score_solve.py over golden/*.json
 //! ```
 
 use super::degeneracy::{Degeneracy, NOT_ISOLATED, condition, meet_in_points};
+use super::forms::triangular;
 use super::frame::Axes;
 use super::normalised::Normalised;
 use super::polish::{Fit, polish};
 use super::quadrics::{Quadric, three_quadrics_thorough};
-use super::quaternion::{form, rotation};
+use super::quaternion::{form_of, rotation};
 use super::{Row, Sought};
 use crate::geometry::{Matrix3, Rotation3, Similarity, Vector3};
 
@@ -65,6 +67,7 @@ pub fn solve(sought: &Sought, rows: &[Row]) -> Result<Vec<Solution>, Degeneracy>
     let problem = Normalised::new(sought, rows)?;
     let (limit, far) = if problem.rows.len() == sought.unknowns() { (EXACT, FAR_ROUNDING) } else { (CONSISTENT, 0.0) };
     let mut fits: Vec<Fit> = candidates(&problem)?.iter().filter_map(|start| polish(&problem, start)).collect();
+    problem.judge_by_all_rows(&mut fits);
     fits.retain(|fit| fit.scale > 0.0 && fit.residual <= limit * fit.scale.max(1.0) + far * fit.translation.norm());
     // Of several approaches to one solution the best stays.
     fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
@@ -100,7 +103,8 @@ impl Solution {
 
     fn is_finite(&self) -> bool {
         let pose = &self.object_from_sensor;
-        (pose.scale + pose.translation.sum() + pose.rotation.matrix().sum()).is_finite()
+        let parts = pose.translation.iter().chain(pose.rotation.matrix()).chain([&pose.scale]);
+        parts.chain([&self.residual, &self.condition]).all(|v| v.is_finite())
     }
 }
 
@@ -137,10 +141,14 @@ fn candidates(problem: &Normalised) -> Result<Vec<Matrix3<f64>>, Degeneracy> {
 /// Rotations that lay the third sensor axis onto the third object axis and satisfy one of the rows that remain when
 /// the linear unknowns are gone; and the number of such rows that say something of the angle.
 fn about_axis(problem: &Normalised, sensor: &Axes, object: &Axes) -> (Vec<Matrix3<f64>>, usize) {
-    let mut rows: Vec<[f64; 7]> = Vec::with_capacity(problem.rows.len());
-    for row in &problem.rows {
-        let (y, v) = (sensor.coordinates(&row.point), object.coordinates(&row.normal));
-        let [a, b, g] = [v[0] * y[0] + v[1] * y[1], v[1] * y[0] - v[0] * y[1], v[2] * y[2]];
+    let mut rows: Vec<[f64; 7]> = Vec::with_capacity(problem.forms.len());
+    for row in &problem.forms {
+        let v = object.coordinates(&row.normal);
+        // The point in the sensor's axes times the normal in the object's.
+        let product = |v: &Vector3<f64>, y: &Vector3<f64>| v.dot(&(row.turning * y));
+        let a = product(&object.x, &sensor.x) + product(&object.y, &sensor.y);
+        let b = product(&object.y, &sensor.x) - product(&object.x, &sensor.y);
+        let g = product(&object.z, &sensor.z);
         let (d, constant) = problem.sought.split(row.offset);
         rows.push([v[0], v[1], v[2], d, a, b, g + constant]);
     }
@@ -169,12 +177,12 @@ fn about_axis(problem: &Normalised, sensor: &Axes, object: &Axes) -> (Vec<Matrix
 
 /// The rows as quadrics in q, free of the linear unknowns.
 fn quadrics_of(problem: &Normalised) -> Vec<Quadric> {
-    let mut rows: Vec<[f64; 14]> = Vec::with_capacity(problem.rows.len());
-    for row in &problem.rows {
+    let mut rows: Vec<[f64; 14]> = Vec::with_capacity(problem.forms.len());
+    for row in &problem.forms {
         let (d, constant) = problem.sought.split(row.offset);
         let mut out = [0.0; 14];
         out[..4].copy_from_slice(&[row.normal.x, row.normal.y, row.normal.z, d]);
-        out[4..].copy_from_slice(&form(&row.normal, &row.point));
+        out[4..].copy_from_slice(&form_of(&row.turning));
         // |q|^2 = 1 turns a constant into a quadratic form.
         out[4..8].iter_mut().for_each(|square| *square += constant);
         rows.push(out);
@@ -203,26 +211,6 @@ fn combined(quadrics: &[Quadric], seed: usize) -> Option<[Quadric; 3]> {
     })
 }
 
-/// Householder's triangular form of the first `columns` columns, for any number of rows.
-fn triangular<const C: usize>(rows: &mut [[f64; C]], columns: usize) {
-    for k in 0..columns.min(rows.len()) {
-        let square: f64 = rows[k..].iter().map(|row| row[k] * row[k]).sum();
-        if square == 0.0 {
-            continue;
-        }
-        let diagonal = if rows[k][k] > 0.0 { -square.sqrt() } else { square.sqrt() };
-        let weight = (square - diagonal * rows[k][k]).recip();
-        let mut v: Vec<f64> = rows[k..].iter().map(|row| row[k]).collect();
-        v[0] -= diagonal;
-        for j in 0..C {
-            let along: f64 = rows[k..].iter().zip(&v).map(|(row, v)| row[j] * v).sum();
-            for (row, v) in rows[k..].iter_mut().zip(&v) {
-                row[j] -= weight * along * v;
-            }
-        }
-    }
-}
-
 impl Sought {
     /// Linear unknowns removed by reflections: the translation, and the constant 1 beside an unknown scale.
     fn linear_unknowns(&self) -> usize {
@@ -248,6 +236,18 @@ pub fn refine(sought: &Sought, rows: &[Row], start: &Similarity) -> Option<Simil
 }
 
 impl Normalised {
+    /// Largest absolute row where polishing has seen the rows joined into fewer forms.
+    fn judge_by_all_rows(&self, fits: &mut [Fit]) {
+        if self.forms.len() == self.rows.len() {
+            return;
+        }
+        for fit in fits {
+            let turned = fit.rotation * fit.scale;
+            let residual = |row: &Row| (row.normal.dot(&(turned * row.point + fit.translation)) + row.offset).abs();
+            fit.residual = self.rows.iter().map(residual).fold(0.0, f64::max);
+        }
+    }
+
     fn pose(&self, fit: &Fit) -> Similarity {
         let scale = if self.sought.is_similarity() { fit.scale * self.unit / self.spread } else { 1.0 };
         let translation = self.near + self.unit * fit.translation - scale * (fit.rotation * self.centroid);

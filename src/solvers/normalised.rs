@@ -2,13 +2,14 @@
 //!
 //! Normalising is also where the structural tests stand: they need the same quantities.
 
+use std::collections::HashSet;
+
 use super::degeneracy::Degeneracy;
+use super::forms::{Form, forms_of};
+use super::same_planes::{SAME_PLANE, SamePlanes, parallel};
 use super::singular::Singular;
 use super::{Row, Sought};
 use crate::geometry::Vector3;
-
-/// Sine below which two normals have the same direction, and relative difference below which their offsets agree.
-const SAME_PLANE: f64 = 1e-12;
 
 /// Singular value of the normals, relative to the largest, below which they lie in one plane.
 const NORMAL_RANK: f64 = 1e-10;
@@ -31,7 +32,9 @@ pub(super) struct Normalised {
     pub sought: Sought,
     /// Unit normals; points about `centroid` in units of `spread`; offsets about `near` in units of `unit`.
     pub rows: Vec<Row>,
-    /// The normals as a matrix.
+    /// The rows, or what they come to where they are many: what solving sees.
+    pub forms: Vec<Form>,
+    /// The normals of the forms as a matrix.
     pub normals: Singular<3>,
     /// Index of the plane of each row: rows of the same plane share it.
     plane_of: Vec<usize>,
@@ -62,16 +65,17 @@ impl Normalised {
         let near = nearest_point(&scaled);
         let offsets: Vec<f64> = scaled.iter().map(|s| s.about(&near)).collect();
         let unit = if sought.is_similarity() { planes.size_apart(&offsets)? } else { spread };
-        let rows = (0..rows.len())
+        let rows: Vec<Row> = (0..rows.len())
             .map(|r| Row {
                 point: (points[r] - centroid) / spread,
                 normal: planes.normals[r],
                 offset: offsets[r] / unit,
             })
             .collect();
-        let normals = Singular::of(&planes.matrix());
+        let forms = forms_of(&rows);
+        let normals = Singular::of(&forms.iter().map(|form| form.normal.into()).collect::<Vec<[f64; 3]>>());
         let plane_of = planes.plane_of;
-        let problem = Normalised { sought: *sought, rows, normals, plane_of, centroid, spread, near, unit };
+        let problem = Normalised { sought: *sought, rows, forms, normals, plane_of, centroid, spread, near, unit };
         problem.check_points()?;
         problem.check_motion()?;
         Ok(problem)
@@ -83,17 +87,17 @@ impl Normalised {
             return Ok(());
         }
         let (mut rank, mut crowded) = (0, false);
-        for plane in 0..=self.plane_of.iter().copied().max().unwrap_or(0) {
-            let on: Vec<Vector3<f64>> = self.points_of(plane);
-            if on.is_empty() {
-                continue;
-            }
+        for on in self.by_plane().chunk_by(|&a, &b| self.plane_of[a] == self.plane_of[b]) {
+            let on: Vec<Vector3<f64>> = on.iter().map(|&row| self.rows[row].point).collect();
             let mean = on.iter().sum::<Vector3<f64>>() / on.len() as f64;
             let size = on.iter().map(|p| p.amax()).fold(1.0, f64::max);
             let centred: Vec<[f64; 3]> = on.iter().map(|p| (p - mean).into()).collect();
             let extents = Singular::of(&centred).sorted();
             rank += (1 + extents.iter().filter(|&&s| s > EXTENT * size).count()).min(3);
             crowded |= on.len() > 3;
+            if rank >= self.sought.unknowns() {
+                break;
+            }
         }
         match (rank < self.sought.unknowns(), crowded) {
             (false, _) => Ok(()),
@@ -117,40 +121,49 @@ impl Normalised {
         Ok(())
     }
 
-    fn points_of(&self, plane: usize) -> Vec<Vector3<f64>> {
-        (0..self.rows.len()).filter(|&r| self.plane_of[r] == plane).map(|r| self.rows[r].point).collect()
+    /// The rows, those of one plane after the other.
+    fn by_plane(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.rows.len()).collect();
+        order.sort_by_key(|&row| self.plane_of[row]);
+        order
     }
 
-    /// Unit normal (sensor frame) of the largest triangle on one plane, and that plane's normal; `None` where every plane's
-    /// points are collinear.
+    /// Unit normal (sensor frame) of a large triangle on one plane, and that plane's normal; `None` where every plane's
+    /// points are collinear. Of each plane: a point far from its first, one far from that, one far from the line through both.
+    /// No triangle on the plane has more than four times its area: its sides are at most twice as long, and its height is
+    /// at most twice the last distance.
     pub(super) fn largest_triangle(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let mut best = (EXTENT, None);
-        for i in 0..self.rows.len() {
-            let on: Vec<usize> = (i + 1..self.rows.len()).filter(|&j| self.plane_of[j] == self.plane_of[i]).collect();
-            for (k, &j) in on.iter().enumerate() {
-                for &l in &on[k + 1..] {
-                    let p = self.rows[i].point;
-                    let across = (self.rows[j].point - p).cross(&(self.rows[l].point - p));
-                    let area = across.norm();
-                    if area > best.0 {
-                        best = (area, Some((across / area, self.rows[i].normal)));
-                    }
-                }
+        for on in self.by_plane().chunk_by(|&a, &b| self.plane_of[a] == self.plane_of[b]) {
+            let points = || on.iter().map(|&row| self.rows[row].point);
+            let a = farthest(points(), |p| (p - self.rows[on[0]].point).norm());
+            let along = farthest(points(), |p| (p - a).norm()) - a;
+            let across = along.cross(&(farthest(points(), |p| along.cross(&(p - a)).norm()) - a));
+            let area = across.norm();
+            if area > best.0 {
+                best = (area, Some((across / area, self.rows[on[0]].normal)));
             }
         }
         best.1
     }
 }
 
+/// The first of the points for which `distance` is largest.
+fn farthest(points: impl Iterator<Item = Vector3<f64>>, distance: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
+    let measured = points.map(|point| (distance(&point), point));
+    measured.reduce(|best, next| if next.0 > best.0 { next } else { best }).map_or(Vector3::zeros(), |(_, point)| point)
+}
+
 /// The rows without repetition.
 fn different(rows: &[Row]) -> Vec<Row> {
-    let mut out: Vec<Row> = Vec::with_capacity(rows.len());
-    for row in rows {
-        if !out.contains(row) {
-            out.push(*row);
-        }
-    }
-    out
+    let mut seen = HashSet::with_capacity(rows.len());
+    // Both zeros are one number.
+    let bits = |v: &f64| (v + 0.0).to_bits();
+    let numbers = |row: &Row| {
+        let [p, n] = [row.point, row.normal];
+        [p.x, p.y, p.z, n.x, n.y, n.z, row.offset].map(|v| bits(&v))
+    };
+    rows.iter().filter(|row| seen.insert(numbers(row))).copied().collect()
 }
 
 /// Scaling by a power of two is exact.
@@ -185,6 +198,7 @@ struct Planes {
     offsets: Vec<f64>,
     plane_of: Vec<usize>,
     planes: usize,
+    /// Up to three.
     directions: usize,
 }
 
@@ -192,26 +206,15 @@ impl Planes {
     fn of(scaled: &[Scaled]) -> Planes {
         let normals: Vec<Vector3<f64>> = scaled.iter().map(|s| s.normal / s.length).collect();
         let offsets: Vec<f64> = scaled.iter().map(|s| s.offset / s.length).collect();
-        let parallel = |a: usize, b: usize| normals[a].cross(&normals[b]).norm() < SAME_PLANE;
-        let same = |a: usize, b: usize| {
-            let sense = if normals[a].dot(&normals[b]) > 0.0 { 1.0 } else { -1.0 };
-            let size = offsets[a].abs() + offsets[b].abs();
-            parallel(a, b) && (offsets[a] - sense * offsets[b]).abs() <= SAME_PLANE * size
-        };
-        let (mut first_of_plane, mut first_of_direction): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
-        let mut plane_of = Vec::with_capacity(normals.len());
-        for r in 0..normals.len() {
-            let plane = first_of_plane.iter().position(|&first| same(r, first)).unwrap_or_else(|| {
-                first_of_plane.push(r);
-                first_of_plane.len() - 1
-            });
-            plane_of.push(plane);
-            if !first_of_direction.iter().any(|&first| parallel(r, first)) {
-                first_of_direction.push(r);
+        let SamePlanes { plane_of, planes } = SamePlanes::of(&normals, &offsets);
+        // No more than three directions are asked for.
+        let mut directions: Vec<Vector3<f64>> = Vec::new();
+        for normal in &normals {
+            if directions.len() < 3 && !directions.iter().any(|known| parallel(normal, known)) {
+                directions.push(*normal);
             }
         }
-        let (planes, directions) = (first_of_plane.len(), first_of_direction.len());
-        Planes { normals, offsets, plane_of, planes, directions }
+        Planes { normals, offsets, plane_of, planes, directions: directions.len() }
     }
 
     fn check(&self) -> Result<(), Degeneracy> {

@@ -5,6 +5,7 @@
 //! omega and sigma from it and then t anew, since t is linear. For as many rows as unknowns this is Newton's method.
 
 use super::Sought;
+use super::forms::Form;
 use super::normalised::Normalised;
 use super::singular::Singular;
 use crate::geometry::{Matrix3, Rotation3, Vector3};
@@ -62,11 +63,10 @@ pub(super) fn polish(problem: &Normalised, start: &Matrix3<f64>) -> Option<Fit> 
 }
 
 fn fit(problem: &Normalised, scale: f64, rotation: Matrix3<f64>) -> Option<Fit> {
-    let along: Vec<f64> =
-        problem.rows.iter().map(|row| scale * row.normal.dot(&(rotation * row.point)) + row.offset).collect();
+    let along: Vec<f64> = problem.forms.iter().map(|row| scale * row.turning.dot(&rotation) + row.offset).collect();
     let mut translation = -Vector3::from(problem.normals.least_squares(&along, NO_INFORMATION));
     let rest = |translation: &Vector3<f64>| -> Vec<f64> {
-        problem.rows.iter().zip(&along).map(|(row, a)| a + row.normal.dot(translation)).collect()
+        problem.forms.iter().zip(&along).map(|(row, a)| a + row.normal.dot(translation)).collect()
     };
     // Once more on what is left: nearly coplanar normals lose digits in one solution.
     translation -= Vector3::from(problem.normals.least_squares(&rest(&translation), NO_INFORMATION));
@@ -75,16 +75,19 @@ fn fit(problem: &Normalised, scale: f64, rotation: Matrix3<f64>) -> Option<Fit> 
 }
 
 fn step(problem: &Normalised, fit: &Fit) -> (Vector3<f64>, f64) {
+    // Of one point x on one plane n the product is x n^T, with x cross n beside its diagonal and n . x along it.
     let moved: Vec<(Vector3<f64>, Vector3<f64>, f64)> = problem
-        .rows
+        .forms
         .iter()
         .map(|row| {
-            let x = fit.scale * (fit.rotation * row.point);
-            (x, row.normal, -(row.normal.dot(&(x + fit.translation)) + row.offset))
+            let m = fit.scale * (fit.rotation * row.turning.transpose());
+            let across = Vector3::new(m[(1, 2)] - m[(2, 1)], m[(2, 0)] - m[(0, 2)], m[(0, 1)] - m[(1, 0)]);
+            (across, row.normal, m.trace())
         })
         .collect();
-    let right: Vec<f64> = moved.iter().map(|m| m.2).collect();
-    let rows = moved.iter().map(|(x, n, _)| (x.cross(n), n, n.dot(x)));
+    let residual = |(row, m): (&Form, &(_, _, f64))| -(m.2 + row.normal.dot(&fit.translation) + row.offset);
+    let right: Vec<f64> = problem.forms.iter().zip(&moved).map(residual).collect();
+    let rows = moved.iter().copied();
     match &problem.sought {
         Sought::Rigid => {
             let x = solved(rows.map(|(t, n, _)| [t.x, t.y, t.z, n.x, n.y, n.z]), &right);
@@ -117,10 +120,10 @@ fn linear_scale(problem: &Normalised, rotation: &Matrix3<f64>) -> f64 {
     if !problem.sought.is_similarity() {
         return 1.0;
     }
-    let right: Vec<f64> = problem.rows.iter().map(|row| -row.offset).collect();
-    let rows = problem.rows.iter().map(|row| {
+    let right: Vec<f64> = problem.forms.iter().map(|row| -row.offset).collect();
+    let rows = problem.forms.iter().map(|row| {
         let n = row.normal;
-        [n.x, n.y, n.z, n.dot(&(rotation * row.point))]
+        [n.x, n.y, n.z, row.turning.dot(rotation)]
     });
     solved(rows, &right)[3]
 }

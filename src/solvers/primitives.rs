@@ -121,7 +121,7 @@ fn extent(pairs: &[(SensorPrimitive, ObjectPrimitive)]) -> (Vector3<f64>, f64) {
         })
         .collect();
     let centre = anchors.iter().sum::<Vector3<f64>>() / anchors.len().max(1) as f64;
-    let size = anchors.iter().map(|a| (a - centre).norm()).fold(0.0, f64::max);
+    let size = anchors.iter().map(|a| length(&(a - centre))).fold(0.0, f64::max);
     (centre, if size > 0.0 { size } else { 1.0 })
 }
 
@@ -166,5 +166,5 @@ fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
 
 fn length(v: &Vector3<f64>) -> f64 {
     let largest = v.amax();
-    largest * (v / largest).norm()
+    if largest > 0.0 { largest * (v / largest).norm() } else { 0.0 }
 }

@@ -23,7 +23,13 @@
 use super::primitives::{ObjectPrimitive, PrimitiveError, SensorPrimitive, rows_of};
 use super::{Degeneracy, Row, Solution, Sought, Up, solve};
 use crate::geometry::Vector3;
+use serde_json::error::Category;
+use serde_json::value::RawValue;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// The longest problem that is read, bytes. Chosen: some three million pairs.
+pub const LARGEST_PROBLEM_BYTES: u64 = 256 << 20;
 
 /// Why a problem has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -75,34 +81,41 @@ fn solution_json(solution: &Solution) -> Value {
     })
 }
 
+/// The problem's members, still as text: of a long list only one entry at a time becomes JSON.
+type Members<'t> = BTreeMap<String, &'t RawValue>;
+
 /// Reads a problem; every message names the place.
 pub fn parse_problem(text: &str) -> Result<Problem, Refusal> {
-    let value: Value = serde_json::from_str(text).map_err(|error| ill_formed(format!("no JSON: {error}")))?;
-    let kind = value.get("kind").and_then(Value::as_str).unwrap_or_default();
-    if !["rigid", "similarity", "rigid_gravity", "similarity_gravity"].contains(&kind) {
-        let expected = "expected rigid, similarity, rigid_gravity or similarity_gravity";
-        return Err(ill_formed(format!("kind is {}, {expected}", value.get("kind").unwrap_or(&Value::Null))));
-    }
-    let rows = if value.get("sensor").is_some() { mixed_rows(&value)? } else { point_rows(&value)? };
+    let members: Members = serde_json::from_str(text).map_err(|error| match error.classify() {
+        Category::Data => ill_formed("the kind is missing: expected an object {\"kind\": ..}".to_owned()),
+        _ => ill_formed(format!("no JSON: {error}")),
+    })?;
+    let kind = member(&members, "kind")?;
+    let kind = kind.as_str().ok_or(&kind);
     let sought = match kind {
-        "rigid" => Sought::Rigid,
-        "similarity" => Sought::Similarity,
-        "rigid_gravity" => Sought::UprightRigid(up(&value)?),
-        _ => Sought::UprightSimilarity(up(&value)?),
+        Ok("rigid") => Sought::Rigid,
+        Ok("similarity") => Sought::Similarity,
+        Ok("rigid_gravity") => Sought::UprightRigid(up(&members)?),
+        Ok("similarity_gravity") => Sought::UprightSimilarity(up(&members)?),
+        other => {
+            let found = other.map_or_else(shown, |word| shown(&Value::from(word)));
+            let expected = "expected rigid, similarity, rigid_gravity or similarity_gravity";
+            return Err(ill_formed(format!("kind is {found}, {expected}")));
+        }
     };
+    let rows = if members.contains_key("sensor") { mixed_rows(&members)? } else { point_rows(&members)? };
     Ok(Problem { sought, rows })
 }
 
-fn point_rows(value: &Value) -> Result<Vec<Row>, Refusal> {
-    let points = list(value, "points")?;
-    let points: Vec<Vector3<f64>> = indexed(points, "points", vector)?;
-    let planes = indexed(list(value, "planes")?, "planes", plane)?;
-    indexed(list(value, "pairs")?, "pairs", |pair, place| {
+fn point_rows(members: &Members) -> Result<Vec<Row>, Refusal> {
+    let points: Vec<Vector3<f64>> = entries(members, "points", vector)?;
+    let planes = entries(members, "planes", plane)?;
+    entries(members, "pairs", |pair, place| {
         let indices: Option<Vec<usize>> = pair
             .as_array()
             .and_then(|pair| pair.iter().map(|v| v.as_u64().and_then(|i| usize::try_from(i).ok())).collect());
         let Some([point, plane]) = indices.as_deref() else {
-            return Err(ill_formed(format!("{place} is {pair}, expected two indices [point, plane]")));
+            return Err(ill_formed(format!("{place} is {}, expected two indices [point, plane]", shown(pair))));
         };
         let missing = |what: &str, index: usize, count: usize| {
             ill_formed(format!("{place} names {what} {index}, but there are {count} (counted from 0)"))
@@ -113,8 +126,8 @@ fn point_rows(value: &Value) -> Result<Vec<Row>, Refusal> {
     })
 }
 
-fn mixed_rows(value: &Value) -> Result<Vec<Row>, Refusal> {
-    let sensor = indexed(list(value, "sensor")?, "sensor", |v, place| {
+fn mixed_rows(members: &Members) -> Result<Vec<Row>, Refusal> {
+    let sensor = entries(members, "sensor", |v, place| {
         if let Some(point) = v.get("point") {
             Ok(SensorPrimitive::Point(vector(point, &format!("{place}.point"))?))
         } else if let Some(l) = v.get("line") {
@@ -127,7 +140,7 @@ fn mixed_rows(value: &Value) -> Result<Vec<Row>, Refusal> {
             Err(ill_formed(format!("{place} is no point, line or plane")))
         }
     })?;
-    let object = indexed(list(value, "object")?, "object", |v, place| {
+    let object = entries(members, "object", |v, place| {
         if let Some(p) = v.get("plane") {
             let (normal, offset) = plane(p, &format!("{place}.plane"))?;
             Ok(ObjectPrimitive::Plane { normal, offset })
@@ -147,9 +160,10 @@ fn mixed_rows(value: &Value) -> Result<Vec<Row>, Refusal> {
     Ok(rows_of(&pairs)?)
 }
 
-fn up(value: &Value) -> Result<Up, Refusal> {
+fn up(members: &Members) -> Result<Up, Refusal> {
+    let up = member(members, "up")?;
     let side = |name: &str| {
-        let given = value.get("up").and_then(|up| up.get(name));
+        let given = up.get(name);
         vector(given.unwrap_or(&Value::Null), &format!("up.{name}"))
     };
     let (sensor, object) = (side("sensor")?, side("object")?);
@@ -160,27 +174,68 @@ fn ill_formed(message: String) -> Refusal {
     Refusal::IllFormed(message)
 }
 
-fn list<'a>(value: &'a Value, key: &str) -> Result<&'a [Value], Refusal> {
-    let entries = value.get(key).and_then(Value::as_array);
-    entries.map(Vec::as_slice).ok_or_else(|| ill_formed(format!("{key} is missing or no list")))
+/// One member of the problem; null where it is missing.
+fn member(members: &Members, key: &str) -> Result<Value, Refusal> {
+    members.get(key).map_or(Ok(Value::Null), |text| parsed(text, key))
 }
 
-fn indexed<T>(
-    values: &[Value],
+/// Every entry of a list, read.
+fn entries<T>(
+    members: &Members,
     key: &str,
     read: impl Fn(&Value, &str) -> Result<T, Refusal>,
 ) -> Result<Vec<T>, Refusal> {
-    values.iter().enumerate().map(|(i, value)| read(value, &format!("{key}[{i}]"))).collect()
+    let list: Option<Vec<&RawValue>> = members.get(key).and_then(|text| serde_json::from_str(text.get()).ok());
+    let list = list.ok_or_else(|| ill_formed(format!("{key} is missing or no list")))?;
+    let read_one = |(i, text): (usize, &&RawValue)| {
+        let place = format!("{key}[{i}]");
+        read(&parsed(text, &place)?, &place)
+    };
+    list.iter().enumerate().map(read_one).collect()
 }
 
+/// JSON that may still hold numbers beyond all that there are, or lists in lists without end.
+fn parsed(text: &RawValue, place: &str) -> Result<Value, Refusal> {
+    serde_json::from_str(text.get()).map_err(|error| {
+        let error = error.to_string();
+        let reason = error.split(" at line ").next().unwrap_or_default();
+        ill_formed(format!("{place} is {}: {reason}", shortened(text.get())))
+    })
+}
+
+/// Characters of a value that a message repeats at most.
+const SHOWN_CHARACTERS: usize = 60;
+
+fn shown(value: &Value) -> String {
+    shortened(&value.to_string())
+}
+
+/// The beginning, with all that could steer a terminal written out.
+fn shortened(text: &str) -> String {
+    let mut shown = String::new();
+    for c in text.chars().take(SHOWN_CHARACTERS) {
+        if c == ' ' || c.is_ascii_graphic() { shown.push(c) } else { shown.extend(c.escape_default()) }
+    }
+    if text.chars().nth(SHOWN_CHARACTERS).is_some() { shown + "..." } else { shown }
+}
+
+/// Numbers up to here can be added, and multiplied by few others, without leaving the finite. Far beyond any unit: golden
+/// problems go to 1e151.
+const LARGEST_NUMBER: f64 = 1e200;
+
 fn number(value: &Value, place: &str) -> Result<f64, Refusal> {
-    let number = value.as_f64().filter(|v| v.is_finite());
-    number.ok_or_else(|| ill_formed(format!("{place} is {value}, expected a finite number")))
+    let number = value.as_f64().filter(|v| v.abs() <= LARGEST_NUMBER);
+    number.ok_or_else(|| {
+        ill_formed(format!(
+            "{place} is {}, expected a number between -{LARGEST_NUMBER:e} and {LARGEST_NUMBER:e}",
+            shown(value)
+        ))
+    })
 }
 
 fn vector(value: &Value, place: &str) -> Result<Vector3<f64>, Refusal> {
     let Some([x, y, z]) = value.as_array().map(Vec::as_slice) else {
-        return Err(ill_formed(format!("{place} is {value}, expected three numbers")));
+        return Err(ill_formed(format!("{place} is {}, expected three numbers", shown(value))));
     };
     Ok(Vector3::new(number(x, place)?, number(y, place)?, number(z, place)?))
 }

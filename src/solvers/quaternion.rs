@@ -42,19 +42,24 @@ pub(super) fn rotation(q: &Quaternion) -> Matrix3<f64> {
 /// of ww it is n . p, of xx it is n_x p_x - n_y p_y - n_z p_z, of wx it is 2 (p x n)_x, of xy it is 2 (n_x p_y + n_y p_x).
 #[inline]
 pub(super) fn form(n: &Vector3<f64>, p: &Vector3<f64>) -> [f64; 10] {
-    let (a, b, c) = (n.x * p.x, n.y * p.y, n.z * p.z);
-    let v = p.cross(n) * 2.0;
+    form_of(&(n * p.transpose()))
+}
+
+/// The same for a sum of such products n p^T.
+#[inline]
+pub(super) fn form_of(b: &Matrix3<f64>) -> [f64; 10] {
+    let [x, y, z] = [b[(0, 0)], b[(1, 1)], b[(2, 2)]];
     [
-        a + b + c,
-        a - b - c,
-        b - a - c,
-        c - a - b,
-        v.x,
-        v.y,
-        v.z,
-        2.0 * (n.x * p.y + n.y * p.x),
-        2.0 * (n.x * p.z + n.z * p.x),
-        2.0 * (n.y * p.z + n.z * p.y),
+        x + y + z,
+        x - y - z,
+        y - x - z,
+        z - x - y,
+        2.0 * (b[(2, 1)] - b[(1, 2)]),
+        2.0 * (b[(0, 2)] - b[(2, 0)]),
+        2.0 * (b[(1, 0)] - b[(0, 1)]),
+        2.0 * (b[(0, 1)] + b[(1, 0)]),
+        2.0 * (b[(0, 2)] + b[(2, 0)]),
+        2.0 * (b[(1, 2)] + b[(2, 1)]),
     ]
 }
 

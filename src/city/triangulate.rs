@@ -1,6 +1,8 @@
 //! A ring of points in its plane to triangles, even-odd, without new points unless the ring crosses itself.
 
-use spade::handles::FixedUndirectedEdgeHandle;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
 /// Rings that cross themselves are searched edge against edge; longer ones would take too long.
@@ -11,6 +13,11 @@ const CROSSINGS_PER_CORNER: usize = 2;
 
 /// The area of the triangles may differ from the ring's own by this share before the ring is taken to overlap itself.
 const AREA_SHARE: f64 = 1e-6;
+
+/// Parts for each edge into which points on it may cut it; walking up and down a line of many points makes more.
+const PARTS_PER_EDGE: usize = 16;
+
+type Mesh = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 /// Triangles of a ring, as indices into the ring, or past its end into `crossings`.
 pub(super) struct Triangles {
@@ -42,40 +49,109 @@ fn doubled_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 }
 
 /// Delaunay triangulation held by the edges, then the triangles that lie an odd number of edges inside.
-/// `None` where two edges cross between points.
+/// `None` where two edges cross between points, or lie on each other beyond reason.
 fn constrained(points: &[[f64; 2]], edges: &[[usize; 2]]) -> Option<Vec<[usize; 3]>> {
-    let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
-    let mut handles = Vec::with_capacity(points.len());
-    let mut point_of = Vec::with_capacity(points.len());
-    for (at, point) in points.iter().enumerate() {
-        let handle = mesh.insert(mitigate_underflow(Point2::new(point[0], point[1]))).ok()?;
-        if handle.index() == point_of.len() {
-            point_of.push(at);
-        }
-        handles.push(handle);
-    }
+    let (mut mesh, handles) = delaunay(points)?;
     let mut walked = Vec::with_capacity(edges.len());
-    for &[from, to] in edges {
-        if handles[from] == handles[to] {
-            continue;
-        }
+    for [from, to] in borders(&handles, edges) {
         // An edge through other points becomes several; none at all means that it would cross an earlier edge.
-        let parts = mesh.try_add_constraint(handles[from], handles[to]);
-        if parts.is_empty() {
+        let parts = mesh.try_add_constraint(from, to);
+        if parts.is_empty() || walked.len() > PARTS_PER_EDGE * edges.len() {
             return None;
         }
         walked.extend(parts.into_iter().map(|part| part.as_undirected()));
+    }
+    let mut point_of = vec![usize::MAX; mesh.num_vertices()];
+    for (at, handle) in handles.iter().enumerate() {
+        point_of[handle.index()] = point_of[handle.index()].min(at);
     }
     let inside = faces_inside(&mesh, &walked);
     let corners = mesh.inner_faces().filter(|face| inside[face.fix().index()]);
     Some(corners.map(|face| face.vertices().map(|vertex| point_of[vertex.fix().index()])).collect())
 }
 
+/// Delaunay triangulation of the points, and the vertex that each became; `None` where one is not finite.
+///
+/// In the ring's own order a wall of n corners in line takes n * n steps (40,000 corners: 5 s): the mesh finds a place
+/// by walking there from another, past all points as long as they are in line, and a corner laid beside a full line is
+/// tied to all of it. So a triangle comes first, then ever larger samples of the rest, each in the order of the ring and
+/// sought from the corner before it (Amenta, Choi, Rote 2003: Incremental constructions con BRIO): about n * log n.
+fn delaunay(points: &[[f64; 2]]) -> Option<(Mesh, Vec<FixedVertexHandle>)> {
+    let mut mesh = Mesh::with_capacity(points.len(), 3 * points.len(), 2 * points.len());
+    let mut handles: Vec<Option<FixedVertexHandle>> = vec![None; points.len()];
+    let first_at_place = first_at_place(points);
+    let mut insert = |at: usize, near: &mut Option<FixedVertexHandle>| {
+        let point = mitigate_underflow(Point2::new(points[at][0], points[at][1]));
+        let made = match *near {
+            Some(near) => mesh.insert_with_hint(point, near),
+            None => mesh.insert(point),
+        };
+        *near = made.ok();
+        *near
+    };
+    let mut last = None;
+    for at in wide_triangle(points) {
+        handles[at] = Some(insert(at, &mut last)?);
+    }
+    // Half of the points are in the last sample, a quarter in the one before it, and so on.
+    let mut random = ChaCha8Rng::seed_from_u64(0);
+    let samples: Vec<u32> = points.iter().map(|_| random.next_u32().trailing_zeros()).collect();
+    for sample in (0..=u32::BITS).rev() {
+        for at in (0..points.len()).filter(|&at| first_at_place[at] == at) {
+            if handles[at].is_some() {
+                last = handles[at];
+            } else if samples[at] == sample {
+                handles[at] = Some(insert(at, &mut last)?);
+            }
+        }
+    }
+    let handles = first_at_place.iter().map(|&first| handles[first]).collect::<Option<_>>()?;
+    Some((mesh, handles))
+}
+
+/// For each point the index of the first that equals it: one corner where thousands of spikes meet is no place to begin
+/// a walk.
+fn first_at_place(points: &[[f64; 2]]) -> Vec<usize> {
+    let mut order: Vec<([u64; 2], usize)> = points.iter().map(|point| point.map(f64::to_bits)).zip(0..).collect();
+    order.sort_unstable();
+    let mut first = vec![0; points.len()];
+    for same in order.chunk_by(|a, b| a.0 == b.0) {
+        same.iter().for_each(|&(_, at)| first[at] = same[0].1);
+    }
+    first
+}
+
+/// The first point, the one farthest from it, and the one farthest from the line through both.
+fn wide_triangle(points: &[[f64; 2]]) -> [usize; 3] {
+    let farthest = |measure: &dyn Fn([f64; 2]) -> f64| {
+        let measures = points.iter().map(|&point| measure(point));
+        measures.enumerate().fold((0, 0.0), |best, (at, far)| if far > best.1 { (at, far) } else { best }).0
+    };
+    let first = points[0];
+    let second = farthest(&|p| (p[0] - first[0]).hypot(p[1] - first[1]));
+    [0, second, farthest(&|p| doubled_area(first, points[second], p).abs())]
+}
+
+/// The edges that bound something, each once: those walked an even number of times (bridges to holes, spikes) do not.
+/// Each begins where fewer edges meet, since the mesh looks around the beginning for its way.
+fn borders(handles: &[FixedVertexHandle], edges: &[[usize; 2]]) -> Vec<[FixedVertexHandle; 2]> {
+    let ends = |edge: &[usize; 2]| edge.map(|at| handles[at].index());
+    let mut pairs: Vec<[usize; 2]> = edges.iter().map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    pairs.sort_unstable();
+    let alike = pairs.chunk_by(|a, b| a == b);
+    let odd: Vec<[usize; 2]> = alike.filter(|same| same.len() % 2 == 1).map(|same| same[0]).collect();
+    let mut meeting = vec![0_u32; handles.len()];
+    for &[a, b] in &odd {
+        meeting[a] += 1;
+        meeting[b] += 1;
+    }
+    let real = odd.into_iter().filter(|[a, b]| a != b);
+    let ordered = real.map(|[a, b]| if meeting[b] < meeting[a] { [b, a] } else { [a, b] });
+    ordered.map(|edge| edge.map(FixedVertexHandle::from_index)).collect()
+}
+
 /// Floods from outside; every edge that was walked an odd number of times changes sides.
-fn faces_inside(
-    mesh: &ConstrainedDelaunayTriangulation<Point2<f64>>,
-    walked: &[FixedUndirectedEdgeHandle],
-) -> Vec<bool> {
+fn faces_inside(mesh: &Mesh, walked: &[FixedUndirectedEdgeHandle]) -> Vec<bool> {
     let mut is_border = vec![false; mesh.num_undirected_edges()];
     for edge in walked {
         is_border[edge.index()] ^= true;
@@ -246,10 +322,50 @@ mod tests {
         assert!(triangulate(&ring).is_none());
     }
 
+    /// Quadratic in the corners, each of these would take minutes.
+    #[test]
+    fn rings_of_many_corners_take_about_linear_time() {
+        let count = 200_000;
+        let steps = |count: usize| (0..count).map(move |at| at as f64 / count as f64);
+        // Both long edges of a wall full of corners, as it stands and turned, so that rounding bends the lines.
+        let wall: Vec<[f64; 2]> =
+            steps(count / 2).map(|t| [t, 0.0]).chain(steps(count / 2).map(|t| [1.0 - t, 3e-3])).collect();
+        let (sin, cos) = 0.3_f64.sin_cos();
+        let turned: Vec<[f64; 2]> = wall.iter().map(|[x, y]| [cos * x - sin * y, sin * x + cos * y]).collect();
+        // One corner off a line; a comb; a circle; triangles that all meet in one corner; spikes out of one corner.
+        let apex: Vec<[f64; 2]> = steps(count).map(|t| [t, 0.0]).chain([[0.5, 1.0]]).collect();
+        let comb: Vec<[f64; 2]> =
+            (0..count).map(|at| [at as f64, (at % 2) as f64]).chain([[count as f64, 9.0], [0.0, 9.0]]).collect();
+        let circle: Vec<[f64; 2]> = steps(count).map(|t| (t * std::f64::consts::TAU).sin_cos().into()).collect();
+        let on_rim = |at: usize| <[f64; 2]>::from((3.0 * at as f64 / count as f64).sin_cos()).map(|v| 2.0 * v);
+        let flower: Vec<[f64; 2]> =
+            (0..count / 3).flat_map(|at| [[0.0, 0.0], on_rim(3 * at + 1), on_rim(3 * at)]).collect();
+        let spikes: Vec<[f64; 2]> =
+            SQUARE.into_iter().chain((0..count / 2).flat_map(|at| [[0.0, 0.0], on_rim(at)])).collect();
+        for (name, ring, expected) in [
+            ("wall", wall, 3e-3),
+            ("turned", turned, 3e-3),
+            ("apex", apex, 0.5),
+            ("comb", comb, 8.5 * count as f64),
+            ("circle", circle, std::f64::consts::PI),
+            ("flower", flower, 2.0),
+            ("spikes", spikes, 100.0),
+        ] {
+            let covered = area(&ring).unwrap_or_else(|| panic!("{name} is given up"));
+            assert!((covered - expected).abs() < 1e-4 * expected, "{name}: {covered}");
+        }
+    }
+
+    #[test]
+    fn a_line_walked_up_and_down_is_given_up_soon() {
+        let count = 50_000;
+        let line = (0..count).map(|at| if at % 2 == 0 { [at as f64, 0.0] } else { [(count - at) as f64, 0.0] });
+        let ring: Vec<[f64; 2]> = line.chain([[0.0, 1.0]]).collect();
+        assert!(triangulate(&ring).is_none());
+    }
+
     #[test]
     fn no_ring_makes_it_panic() {
-        use rand_chacha::ChaCha8Rng;
-        use rand_chacha::rand_core::{Rng, SeedableRng};
         let mut random = ChaCha8Rng::seed_from_u64(7);
         for round in 0..3000 {
             let corners = 3 + random.next_u64() % 9;

@@ -7,6 +7,7 @@ mod build;
 mod facet;
 mod join;
 mod origin;
+mod polygons;
 mod read;
 mod recognise;
 mod source;

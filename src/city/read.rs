@@ -42,6 +42,15 @@ pub enum CityError {
     NoFaces { path: PathBuf, found: String },
     #[error("more than 4 billion vertices or triangles; split the model ({})", path.display())]
     TooLarge { path: PathBuf },
+    #[error(
+        "polygon {polygon} of object {object} has a corner at {}; expected finite coordinates in metres",
+        place(corner)
+    )]
+    CornerNotFinite { polygon: usize, object: String, corner: [f64; 3] },
+}
+
+fn place([x, y, z]: &[f64; 3]) -> String {
+    format!("({x}, {y}, {z})")
 }
 
 fn obj_place(path: &Path, error: &ObjError) -> String {

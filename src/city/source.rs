@@ -151,7 +151,7 @@ fn obj_warnings(path: &Path, oddities: &ObjOddities) -> Vec<CityWarning> {
 
 /// The power of ten that nearly all coordinates are multiples of: what the writer rounded to. Numbers that the format
 /// itself can only hold to `spacing_m` are no better known than that.
-fn written_precision(positions: &[Point3<f64>], spacing_m: f64) -> f64 {
+pub(super) fn written_precision(positions: &[Point3<f64>], spacing_m: f64) -> f64 {
     let step = positions.len().div_ceil(PRECISION_SAMPLES).max(1);
     let sample: Vec<f64> = positions.iter().step_by(step).flat_map(|position| position.iter().copied()).collect();
     let is_odd = |value: f64, per_metre: f64| {

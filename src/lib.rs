@@ -17,6 +17,7 @@ pub mod correspondence;
 pub mod verdict;
 pub mod merging;
 pub mod export;
+pub mod synthetic;
 
 mod align;
 

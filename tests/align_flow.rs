@@ -1,109 +1,46 @@
 //! The whole alignment on a small made-up block: houses, ground, a cloud with noise and clutter, a start that is off.
 
-use cityweld::city::{CityModel, CityOptions, read_city};
-use cityweld::geometry::{Point3, Rotation3, Similarity, Start, StartSigmas, Vector3};
-use cityweld::planes::PreparedCity;
+use cityweld::geometry::{Start, Vector3};
 use cityweld::reconstruction::Reconstruction;
-use cityweld::robust::Random;
+use cityweld::synthetic::{Block, CloudOptions, Move, Offset, Survey, sfm_from_city};
 use cityweld::verdict::{Alignment, Verdict};
 use cityweld::{AlignOptions, Up, align};
 
-/// Corner, extent and turn of each house, metres and degrees: no two alike, none symmetric with another.
-const HOUSES: [([f64; 3], [f64; 3], f64); 4] = [
-    ([0.0, 0.0, 0.0], [12.0, 8.0, 7.0], 0.0),
-    ([20.0, 3.0, 0.0], [9.0, 14.0, 10.0], 25.0),
-    ([-6.0, 20.0, 0.0], [18.0, 7.0, 5.5], -12.0),
-    ([18.0, 28.0, 0.0], [7.0, 7.0, 12.0], 50.0),
-];
-
-/// The five faces of a house that can be seen, corners counter-clockwise from outside.
-fn faces((corner, size, turn_deg): ([f64; 3], [f64; 3], f64)) -> Vec<[Point3<f64>; 4]> {
-    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), turn_deg.to_radians());
-    let at = |x: f64, y: f64, z: f64| {
-        Point3::from(Vector3::from(corner) + turn * Vector3::new(x * size[0], y * size[1], z * size[2]))
-    };
-    let wall =
-        |a: (f64, f64), b: (f64, f64)| [at(a.0, a.1, 0.0), at(b.0, b.1, 0.0), at(b.0, b.1, 1.0), at(a.0, a.1, 1.0)];
-    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-    let mut faces: Vec<_> = (0..4).map(|i| wall(corners[i], corners[(i + 1) % 4])).collect();
-    faces.push(corners.map(|(x, y)| at(x, y, 1.0)));
-    faces
-}
-
-fn ground() -> [Point3<f64>; 4] {
-    [(-40.0, -40.0), (70.0, -40.0), (70.0, 80.0), (-40.0, 80.0)].map(|(x, y)| Point3::new(x, y, 0.0))
-}
-
-fn city(with_ground: bool) -> CityModel {
-    let mut obj = String::new();
-    let mut count = 0;
-    let mut face = |obj: &mut String, corners: &[Point3<f64>; 4]| {
-        corners.iter().for_each(|c| obj.push_str(&format!("v {} {} {}\n", c.x, c.y, c.z)));
-        obj.push_str(&format!("f {} {} {} {}\n", count + 1, count + 2, count + 3, count + 4));
-        count += 4;
-    };
-    for (i, house) in HOUSES.into_iter().enumerate() {
-        obj.push_str(&format!("o house_{i}\n"));
-        faces(house).iter().for_each(|f| face(&mut obj, f));
-    }
-    if with_ground {
-        obj.push_str("o ground\n");
-        face(&mut obj, &ground());
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("city.obj");
-    std::fs::write(&path, obj).unwrap();
-    read_city(&path, &[], &CityOptions::default()).unwrap()
-}
-
-fn sfm_from_city() -> Similarity {
-    let rotation = Rotation3::from_euler_angles(1.1, -0.4, 2.2);
-    Similarity { scale: 0.13, rotation, translation: Vector3::new(4.0, -2.0, 9.0) }
+fn block(with_ground: bool) -> Block {
+    Block::four_houses().with_ground(with_ground)
 }
 
 /// Points on walls, and on the ground round the houses if asked for, 2 cm of noise, one in ten anywhere.
-fn cloud(with_ground: bool) -> Reconstruction {
-    let mut random = Random::stream(5, 0);
-    let mut points = Vec::new();
-    let mut on = |corners: &[Point3<f64>; 4], count: usize, random: &mut Random| {
-        for _ in 0..count {
-            let (u, v) = (random.unit(), random.unit());
-            let noise = Vector3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5) * 0.07;
-            points.push(corners[0] + (corners[1] - corners[0]) * u + (corners[3] - corners[0]) * v + noise);
-        }
-    };
-    for house in HOUSES {
-        faces(house)[..4].iter().for_each(|f| on(f, 150, &mut random));
-    }
-    if with_ground {
-        let near = [(-8.0, -8.0), (32.0, -8.0), (32.0, 40.0), (-8.0, 40.0)].map(|(x, y)| Point3::new(x, y, 0.0));
-        on(&near, 500, &mut random);
-    }
-    let clutter = points.len() / 10;
-    for _ in 0..clutter {
-        points.push(Point3::new(60.0 * random.unit() - 15.0, 70.0 * random.unit() - 15.0, 10.0 * random.unit()));
-    }
-    let to_sfm = sfm_from_city();
-    Reconstruction { points: points.iter().map(|p| to_sfm.apply(p)).collect(), ..Reconstruction::default() }
+fn survey(with_ground: bool) -> Survey {
+    let points_on_ground = if with_ground { 500 } else { 0 };
+    block(with_ground).cloud(&CloudOptions { points_on_ground, seed: 5, ..CloudOptions::default() })
 }
 
-/// The truth, 7 m and 8 degrees off and 12 % too large, about the middle of the block.
+/// Metres for each unit of the reconstruction.
+fn true_scale() -> f64 {
+    sfm_from_city().scale.recip()
+}
+
+/// The truth, 7 m and 8 degrees off and 12 % too large.
+const OFF: Offset = Offset { shift_m: [5.0, -5.0, 1.5], heading_rad: 8.0 * DEGREE, tilt_rad: [0.0; 2], scale: 1.12 };
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+fn start_off(offset: &Offset) -> Start {
+    Start::with_default_sigmas(block(true).off(offset) * sfm_from_city().inverse())
+}
+
 fn options(seed: u64) -> AlignOptions {
-    let middle = Point3::new(12.0, 16.0, 3.0);
-    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 8f64.to_radians());
-    let off = Similarity::about(&middle, &(middle + Vector3::new(5.0, -5.0, 1.5)), 1.12, turn);
-    AlignOptions { seed, ..AlignOptions::new(Start::with_default_sigmas(off * sfm_from_city().inverse())) }
+    AlignOptions { start: start_off(&OFF), fixed_scale: None, up: Up::Auto, seed }
 }
 
 fn run(with_ground: bool, options: &AlignOptions) -> Alignment {
-    align(&PreparedCity::new(city(with_ground)), &cloud(with_ground), None, options, &|_, _, _| ())
+    align(&block(with_ground).city().unwrap(), &survey(with_ground).sfm, None, options, &|_, _, _| ())
 }
 
 /// Largest error over the block's corners, horizontally and along up.
 fn errors(alignment: &Alignment) -> (f64, f64) {
-    let best = alignment.best.unwrap() * sfm_from_city();
-    let corners = HOUSES.into_iter().flat_map(faces).flatten();
-    corners.map(|c| best.apply(&c) - c).fold((0.0, 0.0), |(h, v), d| (d.xy().norm().max(h), d.z.abs().max(v)))
+    let Move { level_m, up_m } = block(true).move_by(&(alignment.best.unwrap() * sfm_from_city()));
+    (level_m, up_m)
 }
 
 #[test]
@@ -125,29 +62,62 @@ fn walls_alone_leave_the_height_open() {
     assert!(level < 0.03, "off by {level} m");
 }
 
+fn with_scale(scale: f64, start: Start) -> Alignment {
+    run(true, &AlignOptions { start, fixed_scale: Some(scale), ..options(0) })
+}
+
 #[test]
+#[ignore = "mended with the kinds of motion"]
 fn holds_a_scale_that_is_given() {
-    let given = AlignOptions { fixed_scale: Some(1.0 / 0.13), ..options(0) };
-    let alignment = run(true, &given);
+    let alignment = with_scale(true_scale(), start_off(&OFF));
     assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
-    assert!((alignment.best.unwrap().scale * 0.13 - 1.0).abs() < 1e-12);
-    assert!(alignment.freedoms.iter().all(|f| f.name != "scale"));
+    assert_eq!(alignment.best.unwrap().scale.to_bits(), true_scale().to_bits());
+    let (level, up) = errors(&alignment);
+    assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
+    let scale: Vec<_> = alignment.freedoms.iter().filter(|f| f.name == "scale").collect();
+    assert_eq!(scale.len(), 1, "{:?}", alignment.freedoms);
+    assert!(scale[0].determined && scale[0].sigma == 0.0, "given, so exact: {:?}", scale[0]);
+}
+
+#[test]
+#[ignore = "mended with the kinds of motion"]
+fn a_wrong_scale_that_is_given_comes_back_as_it_is_and_is_told() {
+    for share in [0.95, 1.05] {
+        let wrong = share * true_scale();
+        let alignment = with_scale(wrong, start_off(&OFF));
+        assert_ne!(alignment.verdict, Verdict::Aligned, "{share}: {}", alignment.reason);
+        if let Some(best) = alignment.best {
+            assert_eq!(best.scale.to_bits(), wrong.to_bits(), "{share}: {}", alignment.reason);
+        }
+        // To three digits: the data's own scale is an estimate.
+        for scale in [true_scale(), wrong] {
+            let told = format!("{scale:.2}");
+            assert!(alignment.reason.contains(&told), "{share}: {told} is not in: {}", alignment.reason);
+        }
+    }
+}
+
+#[test]
+#[ignore = "mended with the kinds of motion"]
+fn a_given_scale_replaces_the_start_s_about_the_start_s_centre() {
+    let doubled = start_off(&Offset { scale: 2.0, ..OFF });
+    let alignment = with_scale(true_scale(), doubled);
+    assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
+    assert_eq!(alignment.best.unwrap().scale.to_bits(), true_scale().to_bits());
+    let (level, up) = errors(&alignment);
+    assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
 }
 
 /// The start, leaning by 17 degrees and owning to it.
-fn leaning(options: &AlignOptions) -> AlignOptions {
-    let mut leaning = AlignOptions { up: Up::None, ..*options };
-    let middle = Point3::new(12.0, 16.0, 3.0);
-    let lean = Rotation3::from_euler_angles(0.25, -0.17, 0.0);
-    let leans = Similarity::about(&middle, &middle, 1.0, lean) * *options.start.city_from_sfm();
-    let sigmas = StartSigmas { tilt_rad: 10f64.to_radians(), ..StartSigmas::default() };
-    leaning.start = Start::new(leans, sigmas).unwrap();
-    leaning
+fn leaning(seed: u64) -> AlignOptions {
+    let mut start = start_off(&Offset { tilt_rad: [0.25, -0.17], ..OFF });
+    start.tilt_sigma_rad = 10.0 * DEGREE;
+    AlignOptions { start, up: Up::None, ..options(seed) }
 }
 
 #[test]
 fn turns_freely_where_up_is_not_used() {
-    let alignment = run(true, &leaning(&options(0)));
+    let alignment = run(true, &leaning(0));
     assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
     let (level, up) = errors(&alignment);
     assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
@@ -155,7 +125,7 @@ fn turns_freely_where_up_is_not_used() {
 
 #[test]
 fn the_result_names_the_configuration_that_searched() {
-    let scaled = |up| AlignOptions { fixed_scale: Some(1.0 / 0.13), up, ..options(0) };
+    let scaled = |up| AlignOptions { fixed_scale: Some(true_scale()), up, ..options(0) };
     let solver = |options: &AlignOptions| run(true, options).search.solver;
     assert_eq!(solver(&options(0)), "upright similarity (2,1,1,1)");
     assert_eq!(solver(&scaled(Up::Auto)), "upright rigid (2,1,1)");
@@ -167,9 +137,9 @@ fn the_result_names_the_configuration_that_searched() {
 
 #[test]
 fn a_single_wall_feeds_no_search_that_turns_freely() {
-    let wall = Reconstruction { points: cloud(false).points[..150].to_vec(), ..Reconstruction::default() };
+    let wall = Reconstruction { points: survey(false).sfm.points[..150].to_vec(), ..Reconstruction::default() };
     let free = AlignOptions { up: Up::None, ..options(0) };
-    let alignment = align(&PreparedCity::new(city(true)), &wall, None, &free, &|_, _, _| ());
+    let alignment = align(&block(true).city().unwrap(), &wall, None, &free, &|_, _, _| ());
     assert_eq!((alignment.verdict, alignment.search.solver.as_str()), (Verdict::Failed, "none"));
     assert_eq!(alignment.search.samples, 0);
 }
@@ -177,9 +147,7 @@ fn a_single_wall_feeds_no_search_that_turns_freely() {
 #[test]
 fn says_failed_where_the_city_is_another() {
     let mut elsewhere = options(0);
-    let mut off = *elsewhere.start.city_from_sfm();
-    off.translation += Vector3::new(45.0, 40.0, 0.0);
-    elsewhere.start = elsewhere.start.about(off);
+    elsewhere.start.city_from_sfm.translation += Vector3::new(45.0, 40.0, 0.0);
     let alignment = run(true, &elsewhere);
     assert_ne!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
 }

@@ -1,25 +1,22 @@
 //! City files as a whole: the real models, and damaged ones.
 
+mod needs;
+
 use std::path::{Path, PathBuf};
 
 use cityweld::city::{CityDefect, CityError, CityModel, CityOptions, CityUp, read_city};
 use cityweld::geometry::{Point3, Vector3};
+use cityweld::synthetic::Block;
+use needs::shared;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// The folder of shared city data, where there is one.
-fn shared() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
-    let found = std::env::var_os("CITYWELD_SHARED").map_or(beside, PathBuf::from).join("data/city");
-    if !found.is_dir() {
-        println!("skipped: no shared data at {}", found.display());
-        return None;
-    }
-    Some(found)
-}
-
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/city").join(name)
+}
+
+fn sample() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample/city.obj")
 }
 
 fn try_read(path: &Path) -> Result<CityModel, CityError> {
@@ -56,7 +53,7 @@ fn check(model: &CityModel) {
 
 #[test]
 fn shared_models_load_with_their_counts() {
-    let Some(shared) = shared() else { return };
+    let Some(shared) = shared("data/city") else { return };
     // Buildings and polygons as they stand in the files; triangles by the table of the data's README.
     let table = [
         ("model_denhaag/city.obj", 1990, 16209, 35592),
@@ -70,36 +67,68 @@ fn shared_models_load_with_their_counts() {
         ("model_symmetric/city.obj", 1, 9, 16),
     ];
     for (name, objects, polygons, triangles) in table {
-        let model = read(&shared.join(name));
-        check(&model);
-        let left_out = count(&model, |defect| matches!(defect, CityDefect::ZeroArea | CityDefect::Tangled)) as usize;
-        assert_eq!(model.objects.len(), objects, "{name}");
-        // A polygon that is not planar stands as its triangles; of a polygon left out no triangle stands.
-        let non_planar = count(&model, |defect| matches!(defect, CityDefect::NonPlanar { .. })) as usize;
-        assert!(
-            model.facets.len() >= polygons - left_out && model.facets.len() <= polygons + 12 * non_planar,
-            "{name}"
-        );
-        assert!(model.triangles.len() + 5 * left_out >= triangles && model.triangles.len() <= triangles, "{name}");
-        assert!(left_out <= 1, "{name}: {:?}", model.warnings);
-        let (low, high) = model.bounds().unwrap();
-        assert!(low.coords.amax().max(high.coords.amax()) < 2000.0, "{name}: vertices are small");
+        assert_counts(&shared.join(name), objects, polygons, triangles);
     }
 }
 
 #[test]
+fn the_sample_loads_with_its_counts() {
+    assert_counts(&sample(), 527, 7921, 19881);
+}
+
+/// A model holds the buildings, polygons and triangles of its file.
+fn assert_counts(path: &Path, objects: usize, polygons: usize, triangles: usize) {
+    let name = path.display();
+    let model = read(path);
+    check(&model);
+    let left_out = count(&model, |defect| matches!(defect, CityDefect::ZeroArea | CityDefect::Tangled)) as usize;
+    assert_eq!(model.objects.len(), objects, "{name}");
+    // A polygon that is not planar stands as its triangles; of a polygon left out no triangle stands.
+    let non_planar = count(&model, |defect| matches!(defect, CityDefect::NonPlanar { .. })) as usize;
+    assert!(model.facets.len() >= polygons - left_out && model.facets.len() <= polygons + 12 * non_planar, "{name}");
+    assert!(model.triangles.len() + 5 * left_out >= triangles && model.triangles.len() <= triangles, "{name}");
+    assert!(left_out <= 1, "{name}: {:?}", model.warnings);
+    let (low, high) = model.bounds().unwrap();
+    assert!(low.coords.amax().max(high.coords.amax()) < 2000.0, "{name}: vertices are small");
+}
+
+#[test]
 fn raw_coordinates_give_the_geometry_of_the_local_ones() {
-    let Some(shared) = shared() else { return };
-    let raw = read(&shared.join("model_rotterdam/city_raw.obj"));
-    let local = read(&shared.join("model_rotterdam/city.obj"));
-    let offset = Vector3::new(90400.0, 435400.0, 0.0);
-    let (raw_vertices, local_vertices) = (vertices(&raw), vertices(&local));
-    let mut compared = 0;
-    for facet in &raw.facets {
-        let name = raw.object_name(facet.object);
+    let Some(shared) = shared("data/city/model_rotterdam") else { return };
+    let compared = assert_same_but_moved(&read(&shared.join("city_raw.obj")), &read(&shared.join("city.obj")));
+    assert_eq!(compared, 1686);
+}
+
+#[test]
+fn the_sample_in_national_coordinates_has_its_geometry() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("national.obj");
+    let moved = std::fs::read_to_string(sample()).unwrap().lines().map(in_national_grid).collect::<String>();
+    std::fs::write(&path, moved).unwrap();
+    let local = read(&sample());
+    assert_eq!(assert_same_but_moved(&read(&path), &local), local.facets.len());
+}
+
+/// From the local coordinates of the Rotterdam models to those of the national grid, metres.
+const NATIONAL: [f64; 3] = [90400.0, 435400.0, 0.0];
+
+/// A line of an OBJ file with millimetres, its vertex moved.
+fn in_national_grid(line: &str) -> String {
+    let Some(vertex) = line.strip_prefix("v ") else { return format!("{line}\n") };
+    let moved =
+        vertex.split_whitespace().zip(NATIONAL).map(|(v, by)| format!(" {:.3}", v.parse::<f64>().unwrap() + by));
+    format!("v{}\n", moved.collect::<String>())
+}
+
+/// Every facet of the one is a facet of the other, moved; says how many.
+fn assert_same_but_moved(national: &CityModel, local: &CityModel) -> usize {
+    let offset = Vector3::from(NATIONAL);
+    let (national_vertices, local_vertices) = (vertices(national), vertices(local));
+    for facet in &national.facets {
+        let name = national.object_name(facet.object);
         let outline =
             |of: &[u32], vertices: &[Point3<f64>]| of.iter().map(|&at| vertices[at as usize]).collect::<Vec<_>>();
-        let expected = outline(&facet.outline, &raw_vertices);
+        let expected = outline(&facet.outline, &national_vertices);
         let differs = |other: &[Point3<f64>]| {
             expected.iter().zip(other).map(|(a, b)| (a - (b + offset)).amax()).fold(0.0, f64::max)
         };
@@ -110,20 +139,40 @@ fn raw_coordinates_give_the_geometry_of_the_local_ones() {
         let nearest =
             candidates.map(|other| differs(&outline(&other.outline, &local_vertices))).fold(f64::MAX, f64::min);
         assert!(nearest <= 1e-3, "{name}: a polygon is {nearest} m off");
-        compared += 1;
     }
-    assert_eq!(compared, 1686);
+    national.facets.len()
 }
 
 #[test]
 fn terrain_shares_the_citys_origin() {
-    let Some(shared) = shared() else { return };
-    let city = read(&shared.join("model_denhaag/city.obj"));
-    let terrain = [shared.join("model_denhaag/terrain.obj")];
-    let both = read_city(&shared.join("model_denhaag/city.obj"), &terrain, &CityOptions::default()).unwrap();
+    let Some(shared) = shared("data/city/model_denhaag") else { return };
+    assert_terrain_joins(&shared.join("city.obj"), &shared.join("terrain.obj"), 5595);
+}
+
+#[test]
+fn made_up_terrain_shares_the_samples_origin() {
+    let folder = tempfile::tempdir().unwrap();
+    let terrain = folder.path().join("terrain.obj");
+    let mut text = String::new();
+    let (low, high) = read(&sample()).bounds().unwrap();
+    let corner = low + read(&sample()).origin;
+    // Strips along x that undulate.
+    for i in 0..20 {
+        for (x, y) in [(0.0, i), (high.x - low.x, i), (high.x - low.x, i + 1), (0.0, i + 1)] {
+            text += &format!("v {} {} {}\n", corner.x + x, corner.y + 20.0 * f64::from(y), 0.5 * f64::from(y % 3));
+        }
+        text += "f -4 -3 -2 -1\n";
+    }
+    std::fs::write(&terrain, text).unwrap();
+    assert_terrain_joins(&sample(), &terrain, 20);
+}
+
+fn assert_terrain_joins(city: &Path, terrain: &Path, facets: usize) {
+    let alone = read(city);
+    let both = read_city(city, &[terrain.to_owned()], &CityOptions::default()).unwrap();
     check(&both);
-    assert_eq!((both.origin, both.sources.len()), (city.origin, 2));
-    assert_eq!(both.facets.len(), city.facets.len() + 5595);
+    assert_eq!((both.origin, both.sources.len()), (alone.origin, 2));
+    assert_eq!(both.facets.len(), alone.facets.len() + facets);
 }
 
 #[test]
@@ -300,11 +349,22 @@ fn swapped_digits_give_an_error_or_a_model() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_model() {
-    let Some(shared) = shared() else { return };
-    let path = shared.join("model_ingolstadt/city.obj");
+    let Some(path) = shared("data/city/model_ingolstadt/city.obj") else { return };
+    assert_same_for_any_number_of_threads(|| read(&path));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_town() {
+    // Some thousand facets: work for several threads.
+    let town = Block::town(15, 10, 0);
+    assert_same_for_any_number_of_threads(|| town.city().unwrap());
+    assert_same_for_any_number_of_threads(|| read(&sample()));
+}
+
+fn assert_same_for_any_number_of_threads(model: impl Fn() -> CityModel + Sync) {
     let with_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        format!("{:?}", pool.install(|| read(&path)))
+        format!("{:?}", pool.install(&model))
     };
     assert!(with_threads(1) == with_threads(3));
 }

@@ -1,18 +1,16 @@
 //! The moved COLMAP model, opened again by pycolmap.
-//!
-//! Needs python3 with pycolmap; the environment variable CITYWELD_PYTHONPATH may name the folder that holds it. Skipped
-//! where it is missing and the variable is not set.
 
+mod needs;
 mod pieces;
 
 use std::path::Path;
-use std::process::Command;
 
 use cityweld::export::colmap::write_colmap;
 use cityweld::format::read_start;
 use cityweld::geometry::{Rotation3, Similarity, Vector3};
 use cityweld::merging::{MergeOptions, MergeVerdict, Part, merge};
 use cityweld::reconstruction::read_reconstruction;
+use needs::pycolmap;
 use pieces::piece;
 
 /// Prints counts, the mean track length, the mean reprojection error over all observations, and one camera's centre.
@@ -29,34 +27,16 @@ image = next(image for image in model.images.values() if image.name == 'p007.jpg
 print(len(model.images), len(model.points3D), len(errors), float(numpy.mean(errors)), *image.projection_center())
 ";
 
-fn python() -> Command {
-    let mut python = Command::new("python3");
-    if let Some(folder) = std::env::var_os("CITYWELD_PYTHONPATH") {
-        python.env("PYTHONPATH", folder);
-    }
-    python
-}
-
 fn look_at(folder: &Path) -> Vec<f64> {
-    let output = python().arg("-c").arg(SCRIPT).arg(folder).output().unwrap();
+    let output = pycolmap().unwrap().arg("-c").arg(SCRIPT).arg(folder).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
     text.split_whitespace().map(|word| word.parse().unwrap()).collect()
 }
 
-fn has_pycolmap() -> bool {
-    let found = python().args(["-c", "import numpy, pycolmap"]).output().is_ok_and(|output| output.status.success());
-    let wanted = std::env::var_os("CITYWELD_PYTHONPATH").is_some();
-    assert!(found || !wanted, "CITYWELD_PYTHONPATH is set, but python3 finds no pycolmap there");
-    if !found {
-        println!("skipped: python3 finds no pycolmap");
-    }
-    found
-}
-
 #[test]
 fn pycolmap_opens_the_moved_model_and_projects_as_before() {
-    if !has_pycolmap() {
+    if pycolmap().is_none() {
         return;
     }
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
@@ -87,7 +67,7 @@ print(model.num_images(), model.num_points3D(), model.compute_mean_track_length(
 
 #[test]
 fn pycolmap_opens_a_merged_model_and_its_statistics_agree() {
-    if !has_pycolmap() {
+    if pycolmap().is_none() {
         return;
     }
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
@@ -105,7 +85,7 @@ fn pycolmap_opens_a_merged_model_and_its_statistics_agree() {
     let room = tempfile::tempdir().unwrap();
     write_colmap(room.path(), &sfm).unwrap();
 
-    let output = python().arg("-c").arg(STATISTICS).arg(room.path()).output().unwrap();
+    let output = pycolmap().unwrap().arg("-c").arg(STATISTICS).arg(room.path()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
     let found: Vec<f64> = text.split_whitespace().map(|word| word.parse().unwrap()).collect();

@@ -1,10 +1,8 @@
 //! Every GLB that the program writes, put before the Khronos validator.
-//!
-//! Needs node and the npm package `gltf-validator`: installed where node finds it, or in the folder that the environment
-//! variable CITYWELD_NODE_MODULES names. Skipped where either is missing and the variable is not set.
+
+mod needs;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use cityweld::city::{CityModel, CityOptions, read_city};
 use cityweld::export::gltf::{Placed, Scene, write_scene};
@@ -12,6 +10,7 @@ use cityweld::export::write_planes_glb;
 use cityweld::format::read_start;
 use cityweld::planes::city_planes;
 use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+use needs::gltf_validator;
 
 const SCRIPT: &str = "
 const validator = require('gltf-validator');
@@ -22,26 +21,8 @@ validator.validateBytes(bytes, { maxIssues: 20 }).then((report) => {
 }, (error) => { console.log(String(error)); process.exit(1); });
 ";
 
-fn node() -> Command {
-    let mut node = Command::new("node");
-    if let Some(folder) = std::env::var_os("CITYWELD_NODE_MODULES") {
-        node.env("NODE_PATH", folder);
-    }
-    node
-}
-
-fn validator_is_present() -> bool {
-    let found = node().args(["-e", "require('gltf-validator')"]).output().is_ok_and(|output| output.status.success());
-    let wanted = std::env::var_os("CITYWELD_NODE_MODULES").is_some();
-    assert!(found || !wanted, "CITYWELD_NODE_MODULES is set, but node finds no gltf-validator there");
-    if !found {
-        println!("skipped: node finds no gltf-validator");
-    }
-    found
-}
-
 fn assert_valid(path: &Path) {
-    let output = node().arg("-e").arg(SCRIPT).arg(path).output().unwrap();
+    let output = gltf_validator().unwrap().arg("-e").arg(SCRIPT).arg(path).output().unwrap();
     assert!(output.status.success(), "{}: {}", path.display(), String::from_utf8_lossy(&output.stdout));
 }
 
@@ -55,7 +36,7 @@ fn sample_city() -> CityModel {
 
 #[test]
 fn the_scene_of_the_sample_is_valid() {
-    if !validator_is_present() {
+    if gltf_validator().is_none() {
         return;
     }
     let city = sample_city();
@@ -80,7 +61,7 @@ fn the_scene_of_the_sample_is_valid() {
 
 #[test]
 fn scenes_with_little_in_them_are_valid() {
-    if !validator_is_present() {
+    if gltf_validator().is_none() {
         return;
     }
     let room = tempfile::tempdir().unwrap();
@@ -93,7 +74,7 @@ fn scenes_with_little_in_them_are_valid() {
 
 #[test]
 fn the_city_colored_by_plane_is_valid() {
-    if !validator_is_present() {
+    if gltf_validator().is_none() {
         return;
     }
     let room = tempfile::tempdir().unwrap();

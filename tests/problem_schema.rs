@@ -2,28 +2,22 @@
 //! and what breaks it is refused.
 
 mod json_schema;
+mod needs;
 
 use cityweld::solvers::problem::{Refusal, answer_json, solve_json};
+use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, sample};
+use cityweld::solvers::{Row, Sought, Up};
 use json_schema::keeps;
+use needs::shared;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
 
 fn schema() -> Value {
     serde_json::from_str(include_str!("../assets/problem.schema.json")).unwrap()
 }
 
-fn golden() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
-    let folder = std::env::var_os("CITYWELD_SHARED").map_or(beside, PathBuf::from).join("golden");
-    folder.is_dir().then_some(folder)
-}
-
 #[test]
 fn every_golden_problem_and_its_answer_keep_to_the_schema() {
-    let Some(golden) = golden() else {
-        println!("skipped: no golden vectors");
-        return;
-    };
+    let Some(golden) = shared("golden") else { return };
     let schema = schema();
     let (mut sound, mut broken) = (0, 0);
     for name in ["rigid", "similarity", "gravity", "special", "hard", "degenerate"] {
@@ -42,6 +36,38 @@ fn every_golden_problem_and_its_answer_keep_to_the_schema() {
         }
     }
     assert!(sound > 700 && broken > 5, "{sound} sound, {broken} broken");
+}
+
+#[test]
+fn made_up_problems_and_their_answers_keep_to_the_schema_and_find_the_truth() {
+    let schema = schema();
+    let mut chance = Chance::new(2);
+    for seed in 0..20 {
+        let [sensor, object] = [chance.direction(), chance.direction()];
+        let up = Up::new(&sensor, &object).unwrap();
+        for (kind, sought, points_per_plane) in [
+            ("rigid", Sought::Rigid, &[1; 6][..]),
+            ("similarity", Sought::Similarity, &[1; 7]),
+            ("rigid_gravity", Sought::UprightRigid(up.clone()), &[2, 1, 1]),
+            ("similarity_gravity", Sought::UprightSimilarity(up), &[2, 1, 1, 1]),
+        ] {
+            let Sample { rows, truth } = sample(&mut chance, &sought, points_per_plane);
+            let points: Vec<Value> = rows.iter().map(|row| json!(row.point.as_slice())).collect();
+            let plane = |row: &Row| json!({"normal": row.normal.as_slice(), "offset": row.offset});
+            let planes: Vec<Value> = rows.iter().map(plane).collect();
+            let pairs: Vec<[usize; 2]> = (0..rows.len()).map(|i| [i, i]).collect();
+            let mut problem = json!({"kind": kind, "points": points, "planes": planes, "pairs": pairs});
+            if kind.ends_with("gravity") {
+                problem["up"] = json!({"sensor": sensor.as_slice(), "object": object.as_slice()});
+            }
+            assert!(keeps(&problem, &schema, &schema), "{problem}");
+            let answer = solve_json(&problem.to_string());
+            assert!(keeps(&answer_json(&answer), &schema["$defs"]["answer"], &schema), "{}", answer_json(&answer));
+            let poses = answer.unwrap();
+            let miss = poses.iter().map(|s| angle_between_rad(&s.object_from_sensor.rotation, &truth.rotation));
+            assert!(miss.fold(f64::MAX, f64::min) < 1e-5, "{kind}, problem {seed}: truth missed");
+        }
+    }
 }
 
 #[test]

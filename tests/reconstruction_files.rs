@@ -1,24 +1,16 @@
-//! Reads and writes whole reconstructions: the shared scenes where they are present, and PLY clouds.
+//! Reads and writes whole reconstructions: COLMAP models and PLY clouds.
+
+mod needs;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use cityweld::export::colmap::write_colmap;
 use cityweld::export::ply::write_ply;
 use cityweld::geometry::{Point3, Rotation3, Similarity, Vector3};
 use cityweld::reconstruction::{PointIndex, Reconstruction, read_reconstruction};
-
-/// The folder of the shared scenes; `None` (and a word about it) where it is not present.
-fn shared() -> Option<PathBuf> {
-    let from_env = std::env::var_os("CITYWELD_SHARED").map(PathBuf::from);
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
-    let found = from_env.into_iter().chain([beside]).find(|path| path.join("data").is_dir());
-    if found.is_none() {
-        println!("skipped: the shared scenes are not present");
-    }
-    found
-}
+use cityweld::synthetic::{Block, CloudOptions};
+use needs::{pycolmap, shared};
 
 fn subfolders(folder: &Path) -> Vec<PathBuf> {
     let mut found: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()).collect();
@@ -26,12 +18,20 @@ fn subfolders(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Every COLMAP model among the shared scenes.
-fn shared_models() -> Vec<PathBuf> {
-    let Some(shared) = shared() else { return Vec::new() };
-    let scenes = ["data/city", "data/merge"].into_iter().flat_map(|kind| subfolders(&shared.join(kind)));
-    let parts = scenes.flat_map(|scene| subfolders(&scene));
-    parts.filter(|p| p.join("points3D.bin").is_file() || p.join("points3D.txt").is_file()).collect()
+/// Every COLMAP model among the shared scenes; `None` where they are not there.
+fn shared_models() -> Option<Vec<PathBuf>> {
+    let kinds = [shared("data/city")?, shared("data/merge")?];
+    let parts = kinds.iter().flat_map(|kind| subfolders(kind)).flat_map(|scene| subfolders(&scene));
+    let models: Vec<_> =
+        parts.filter(|p| p.join("points3D.bin").is_file() || p.join("points3D.txt").is_file()).collect();
+    assert!(models.len() > 20, "{models:?}");
+    Some(models)
+}
+
+/// Models that come with the project.
+fn own_models() -> Vec<PathBuf> {
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample/sfm");
+    ["rig_bin", "rig_txt"].map(|name| data().join(name)).into_iter().chain([sample]).collect()
 }
 
 fn assert_same(a: &Reconstruction, b: &Reconstruction) {
@@ -52,8 +52,17 @@ fn assert_same(a: &Reconstruction, b: &Reconstruction) {
 }
 
 #[test]
+fn every_model_of_the_project_is_read_and_written_again_to_the_bit() {
+    assert_written_to_the_bit(own_models());
+}
+
+#[test]
 fn every_shared_model_is_read_and_written_again_to_the_bit() {
-    for folder in shared_models() {
+    assert_written_to_the_bit(shared_models().unwrap_or_default());
+}
+
+fn assert_written_to_the_bit(models: Vec<PathBuf>) {
+    for folder in models {
         let read = read_reconstruction(&folder).unwrap_or_else(|error| panic!("{error}"));
         println!(
             "{}: {} points, {} images, {:?}",
@@ -79,14 +88,23 @@ fn every_shared_model_is_read_and_written_again_to_the_bit() {
 }
 
 #[test]
+fn a_cloud_is_written_and_read_again_to_the_bit() {
+    let points = Block::mixed_houses().cloud(&CloudOptions::default()).sfm.points;
+    let cloud = Reconstruction { points, ..Reconstruction::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cloud.ply");
+    write_ply(&path, &cloud).unwrap();
+    assert_eq!(read_reconstruction(&path).unwrap().points, cloud.points);
+}
+
+#[test]
 fn shared_clouds_are_read_and_written_again_to_the_bit() {
-    let Some(shared) = shared() else { return };
     for scene in ["pts_denhaag", "pts_ingolstadt", "pts_rotterdam_walls"] {
-        let cloud = shared.join("data/city").join(scene).join("cloud.ply");
+        let Some(cloud) = shared(&format!("data/city/{scene}/cloud.ply")) else { return };
         let read = read_reconstruction(&cloud).unwrap();
         assert_eq!(read.points.len(), 10_000);
-        let out = tempfile::tempdir().unwrap().path().join("cloud.ply");
-        fs::create_dir_all(out.parent().unwrap()).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("cloud.ply");
         write_ply(&out, &read).unwrap();
         assert_eq!(read_reconstruction(&out).unwrap().points, read.points);
     }
@@ -105,37 +123,31 @@ fn city_from_sfm() -> Similarity {
     }
 }
 
-fn has_pycolmap() -> bool {
-    let has = Command::new("python3").args(["-c", "import pycolmap"]).output().is_ok_and(|out| out.status.success());
-    if !has {
-        println!("skipped: python3 has no pycolmap");
-    }
-    has
-}
-
 /// Shares and pixels: what rounding leaves at coordinates of 5 million beside distances of about 10.
 const MOVED_TOLERANCES: [f64; 5] = [1e-14, 1e-14, 1e-12, 1e-5, 1e-6];
 
 #[test]
 fn pycolmap_opens_moved_models_and_finds_the_same_reprojection_errors() {
-    if !has_pycolmap() {
-        return;
-    }
-    let shared: Vec<_> = shared_models()
-        .into_iter()
-        .filter(|p| {
-            ["rotterdam_oblique/sfm", "delft_street/sfm", "lund-one/part_b"].iter().any(|name| p.ends_with(name))
-        })
-        .collect();
+    assert_moved_as_pycolmap_sees_it(own_models());
+}
+
+#[test]
+fn pycolmap_opens_moved_shared_models_and_finds_the_same_reprojection_errors() {
+    let scenes = ["city/rotterdam_oblique/sfm", "city/delft_street/sfm", "merge/lund-one/part_b"];
+    assert_moved_as_pycolmap_sees_it(scenes.iter().filter_map(|scene| shared(&format!("data/{scene}"))).collect());
+}
+
+fn assert_moved_as_pycolmap_sees_it(models: Vec<PathBuf>) {
     let city_from_sfm = city_from_sfm();
-    for folder in [data().join("rig_bin"), data().join("rig_txt")].into_iter().chain(shared) {
+    for folder in models {
+        let Some(mut python) = pycolmap() else { return };
         let out = tempfile::tempdir().unwrap();
         let moved = read_reconstruction(&folder).unwrap().transformed(&city_from_sfm);
         write_colmap(out.path(), &moved).unwrap();
         let Similarity { scale, rotation, translation } = city_from_sfm;
         let by_rows = rotation.matrix().transpose();
         let numbers = [scale].into_iter().chain(by_rows.iter().copied()).chain(translation.iter().copied());
-        let output = Command::new("python3")
+        let output = python
             .arg(data().join("compare_moved.py"))
             .args([&folder, out.path()])
             .args(numbers.map(|v| v.to_string()))

@@ -2,6 +2,7 @@
 //! third of which is in both parts.
 
 mod json_schema;
+mod pieces;
 
 use std::path::Path;
 use std::process::Command;
@@ -16,6 +17,7 @@ use cityweld::reconstruction::{
 use cityweld::robust::{Chart, Matrix7};
 use cityweld::verdict::{Freedom, Support, Verdict};
 use json_schema::keeps;
+use pieces::mirrored;
 use serde_json::Value;
 
 fn camera() -> Camera {
@@ -284,19 +286,7 @@ fn every_kind_of_report_keeps_to_the_published_schema() {
 #[test]
 fn a_part_of_mirrored_photographs_stays_apart() {
     let [first, second] = two_parts();
-    // A sound model of a mirrored place: keypoints, points and cameras are reflected alike.
-    let mut mirrored = second.clone();
-    let flip = |v: &Vector3<f64>| Vector3::new(-v.x, v.y, v.z);
-    mirrored.sfm.points.iter_mut().for_each(|p| *p = Point3::from(flip(&p.coords)));
-    for image in &mut mirrored.sfm.images {
-        let mut turn = image.cam_from_sfm_rotation.into_inner();
-        for (i, j) in [(0, 1), (0, 2), (1, 0), (2, 0)] {
-            turn[(i, j)] = -turn[(i, j)];
-        }
-        image.cam_from_sfm_rotation = Rotation3::from_matrix_unchecked(turn);
-        image.cam_from_sfm_translation = flip(&image.cam_from_sfm_translation);
-        image.observations.iter_mut().for_each(|o| o.x_px = 1000.0 - o.x_px);
-    }
+    let mirrored = given("mirrored", mirrored(second.sfm.clone()));
     let x = mirrored.sfm.images[0].cam_from_sfm(&mirrored.sfm.points[0]);
     assert!(x.z > 0.0, "the mirrored model is sound");
     // And one whose depths are turned inside out, at the same pixels.

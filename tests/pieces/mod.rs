@@ -1,9 +1,112 @@
-//! Pieces of one reconstruction, as a structure-from-motion tool might have left them apart.
+//! Parts for tests of merging that a clone alone can run: pieces of the sample, as a structure-from-motion tool might have left
+//! them apart, and parts that do not belong to it.
+#![allow(dead_code, reason = "no test file needs all of it")]
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
-use cityweld::geometry::Similarity;
-use cityweld::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
+use cityweld::export::colmap::write_colmap;
+use cityweld::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
+use cityweld::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction, read_reconstruction};
+use cityweld::solvers::scene::Chance;
+use cityweld::synthetic::{Block, CaptureOptions, Ring};
+use serde_json::Value;
+
+/// A file or folder of the sample.
+pub fn of_sample(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample").join(path)
+}
+
+pub fn sample() -> Reconstruction {
+    read_reconstruction(&of_sample("sfm")).unwrap()
+}
+
+/// Writes a part as a COLMAP model and gives its folder.
+pub fn write_part(room: &Path, name: &str, part: &Reconstruction) -> PathBuf {
+    let folder = room.join(name);
+    write_colmap(&folder, part).unwrap();
+    folder
+}
+
+/// As a run of its own would have left a piece: every point off by `sigma` along each axis, in the piece's units.
+pub fn blurred(mut piece: Reconstruction, sigma: f64, seed: u64) -> Reconstruction {
+    let mut chance = Chance::new(seed);
+    piece.points.iter_mut().for_each(|x| *x += sigma * chance.normal_vector());
+    piece
+}
+
+/// Photographs of another place through the sample's camera; the first ones are called `names`.
+pub fn another_place(names: &[&str]) -> Reconstruction {
+    let block = Block::mixed_houses();
+    let camera = sample().cameras.swap_remove(0);
+    let mut part =
+        block.capture(&Ring::drone(10).stations(&block), &CaptureOptions { camera, ..CaptureOptions::default() }).sfm;
+    part.images.iter_mut().zip(names).for_each(|(image, name)| image.name = (*name).to_owned());
+    part
+}
+
+/// A sound model of a mirrored place, as mirrored photographs give it: keypoints, points and cameras are reflected alike.
+pub fn mirrored(mut part: Reconstruction) -> Reconstruction {
+    let flip = |v: &Vector3<f64>| Vector3::new(-v.x, v.y, v.z);
+    part.points.iter_mut().for_each(|p| *p = Point3::from(flip(&p.coords)));
+    for image in &mut part.images {
+        let mut turn = image.cam_from_sfm_rotation.into_inner();
+        for (i, j) in [(0, 1), (0, 2), (1, 0), (2, 0)] {
+            turn[(i, j)] = -turn[(i, j)];
+        }
+        image.cam_from_sfm_rotation = Rotation3::from_matrix_unchecked(turn);
+        image.cam_from_sfm_translation = flip(&image.cam_from_sfm_translation);
+        let camera = &part.cameras[image.camera.0 as usize];
+        let width_px = camera.width_px as f64;
+        // SIMPLE_PINHOLE and SIMPLE_RADIAL: focal length, then the principal point.
+        assert_eq!(2.0 * camera.params[1], width_px, "a lens in the middle is its own mirror image");
+        image.observations.iter_mut().for_each(|o| o.x_px = width_px - o.x_px);
+    }
+    without_frames(part)
+}
+
+/// Longer by `factor` along x; no similarity undoes it.
+pub fn stretched(mut part: Reconstruction, factor: f64) -> Reconstruction {
+    part.points.iter_mut().for_each(|p| p.x *= factor);
+    for image in &mut part.images {
+        let mut center = image.center();
+        center.x *= factor;
+        image.cam_from_sfm_translation = -(image.cam_from_sfm_rotation * center.coords);
+    }
+    without_frames(part)
+}
+
+/// Frames would hold the old places of the cameras.
+fn without_frames(mut part: Reconstruction) -> Reconstruction {
+    if let Some(colmap) = &mut part.colmap {
+        (colmap.rigs, colmap.frames) = (None, None);
+    }
+    part
+}
+
+/// A similarity as reports and truths write it.
+pub fn similarity(t: &Value) -> Similarity {
+    let number = |v: &Value| v.as_f64().unwrap();
+    let rotation = Matrix3::from_fn(|row, column| number(&t["rotation"][row][column]));
+    let translation = Vector3::from_fn(|k, _| number(&t["translation"][k]));
+    Similarity::try_new(number(&t["scale"]), rotation, translation).unwrap()
+}
+
+/// Root mean square of how far b's points are off in a's frame, a share of the extent of a.
+pub fn share_off(points: [&[Point3<f64>]; 2], a_from_b: &Similarity, true_a_from_b: &Similarity) -> f64 {
+    let [of_a, of_b] = points;
+    let center = of_a.iter().map(|p| p.coords).sum::<Vector3<f64>>() / of_a.len() as f64;
+    // Sky and far mismatches are left out.
+    let nearest = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.truncate(values.len() * 98 / 100);
+        values
+    };
+    let from_center = nearest(of_a.iter().map(|p| (p.coords - center).norm()).collect());
+    let off = nearest(of_b.iter().map(|p| (a_from_b.apply(p) - true_a_from_b.apply(p)).norm()).collect());
+    let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
+    rms / (2.0 * from_center.last().unwrap())
+}
 
 /// The images `views` with what at least two of them see, in a frame of the piece's own.
 pub fn piece(whole: &Reconstruction, views: Range<usize>, piece_from_whole: &Similarity) -> Reconstruction {

@@ -2,7 +2,7 @@
 
 use cityweld::geometry::{Start, Vector3};
 use cityweld::reconstruction::Reconstruction;
-use cityweld::synthetic::{Block, CloudOptions, Move, Offset, Survey, sfm_from_city};
+use cityweld::synthetic::{Block, CaptureOptions, CloudOptions, Move, Offset, Ring, Station, Survey, sfm_from_city};
 use cityweld::verdict::{Alignment, Verdict};
 use cityweld::{AlignOptions, Up, align};
 
@@ -49,6 +49,21 @@ fn finds_the_block_from_a_start_that_is_off() {
     assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
     let (level, up) = errors(&alignment);
     assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
+}
+
+#[test]
+fn finds_the_block_from_photographs_with_their_cameras_and_superpixels() {
+    let block = Block::mixed_houses().with_ground(true);
+    let stations: Vec<Station> = [Ring::street(16), Ring::drone(16)].iter().flat_map(|r| r.stations(&block)).collect();
+    let survey = block.capture(&stations, &CaptureOptions::default());
+    let start = Start::with_default_sigmas(block.off(&OFF) * survey.city_from_sfm);
+    for superpixels in [None, Some(survey.superpixels(60.0))] {
+        let options = AlignOptions { start, ..options(0) };
+        let alignment = align(&block.city().unwrap(), &survey.sfm, superpixels.as_ref(), &options, &|_, _, _| ());
+        assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
+        let off = block.move_by(&(alignment.best.unwrap() * survey.city_from_sfm.inverse()));
+        assert!(off.level_m < 0.03 && off.up_m < 0.03, "{off:?}");
+    }
 }
 
 #[test]

@@ -24,7 +24,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("lib", &["align"]),
     // For tests, examples and benchmarks: no room may import it.
-    ("synthetic", &["geometry", "city", "reconstruction", "solvers"]),
+    ("synthetic", &["geometry", "city", "reconstruction", "imagery", "solvers"]),
 ];
 
 fn source(path: &str) -> PathBuf {
@@ -140,6 +140,19 @@ fn the_program_uses_only_the_public_library() {
         assert!(!code.contains("#[path"), "{} takes in a file from elsewhere", file.display());
         assert!(!code.contains("synthetic"), "{} uses what is made up for tests", file.display());
     }
+}
+
+#[test]
+fn tests_reach_the_data_beside_the_project_through_one_door() {
+    // That door (tests/needs) is what makes missing data fail under CITYWELD_REQUIRE_DATA.
+    let path = ["join(\"..", "/shared"].concat();
+    let mut files = Vec::new();
+    for folder in ["tests", "src", "benches", "examples"] {
+        rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut files);
+    }
+    let own_way = |file: &&PathBuf| std::fs::read_to_string(file).unwrap().contains(&path);
+    let found: Vec<_> = files.iter().filter(own_way).collect();
+    assert!(matches!(found[..], [door] if door.ends_with("tests/needs/mod.rs")), "{found:?}");
 }
 
 #[test]

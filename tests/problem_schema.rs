@@ -48,7 +48,7 @@ fn made_up_problems_and_their_answers_keep_to_the_schema_and_find_the_truth() {
         for (kind, sought, points_per_plane) in [
             ("rigid", Sought::Rigid, &[1; 6][..]),
             ("similarity", Sought::Similarity, &[1; 7]),
-            ("rigid_gravity", Sought::UprightRigid(up.clone()), &[2, 1, 1]),
+            ("rigid_gravity", Sought::UprightRigid(up), &[2, 1, 1]),
             ("similarity_gravity", Sought::UprightSimilarity(up), &[2, 1, 1, 1]),
         ] {
             let Sample { rows, truth } = sample(&mut chance, &sought, points_per_plane);

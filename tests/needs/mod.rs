@@ -17,7 +17,8 @@ pub fn shared(path: &str) -> Option<PathBuf> {
         return Some(found);
     }
     let lacks = format!("{} is not there", found.display());
-    assert!(!is_required("CITYWELD_REQUIRE_DATA"), "{lacks}, and CITYWELD_REQUIRE_DATA is set");
+    let remedy = "put the data there, or name their folder in CITYWELD_SHARED";
+    assert!(!is_required("CITYWELD_REQUIRE_DATA"), "{lacks}, and CITYWELD_REQUIRE_DATA is set; {remedy}");
     skip(&lacks)
 }
 

@@ -3,7 +3,8 @@
 //! Question     which points of the cloud lie in one plane, and on which side of it stood the cameras?
 //! Input        the cloud, its tracks, and superpixels where there are photographs or labels
 //! Output       [`Patches`]: disjoint groups with a fitted plane each, and the groups that have none with the reason
-//! Method       1. a plane through each point's neighbours gives the cloud's noise and a first normal;
+//! Method       0. points at one place are one point;
+//!              1. a plane through each point's neighbours gives the cloud's noise and a first normal;
 //!              2. a superpixel's points get a plane by robust fitting; its inliers take over that firmer normal;
 //!              3. regions grow from the flattest points over neighbours (in space, and in the same superpixel) that lie in
 //!                 the region's plane and agree with its normal, so that small superpixels of one wall become one patch.
@@ -11,11 +12,14 @@
 //! Fails when   the cloud has no planes (trees, rubble): then there are few patches or none, and that is the answer
 //! Source       region growing after Rabbani, van den Heuvel, Vosselman (2006); superpixel planes after Ramalingam et al. (2010)
 
-use std::collections::VecDeque;
+use std::cmp::Ordering;
+use std::collections::{HashMap, VecDeque};
+
+use rayon::prelude::*;
 
 use super::cloud::{LocalSurface, NEIGHBOURS, local_surfaces};
 use super::fit::{FittedPlane, fit_plane, fit_plane_robustly};
-use crate::geometry::{Point3, Vector3};
+use crate::geometry::{Point3, Rotation3, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::reconstruction::{PointIndex, Reconstruction};
 
@@ -40,7 +44,8 @@ pub enum RejectedGroup {
 /// All patches of a reconstruction.
 #[derive(Clone, Debug, Default)]
 pub struct Patches {
-    /// The points that take part: all of them, or an even thinning of a large cloud.
+    /// The points that take part, one at each place: all of them, or an even thinning of a large cloud. Their order is that of
+    /// their places, so that neither the order of the file nor copies in it change what follows.
     pub support: Vec<PointIndex>,
     /// Their positions, sfm frame.
     pub points: Vec<Point3<f64>>,
@@ -49,6 +54,8 @@ pub struct Patches {
     pub views: Vec<Vector3<f64>>,
     /// Centres of the cameras, sfm frame.
     pub cameras: Vec<Point3<f64>>,
+    /// How the cameras were held, one for each of `cameras`.
+    pub cam_from_sfm_rotations: Vec<Rotation3<f64>>,
     /// For each supporting point the nearest and the farthest camera that saw it.
     pub viewers: Vec<[Option<u32>; 2]>,
     pub patches: Vec<Patch>,
@@ -57,6 +64,8 @@ pub struct Patches {
     /// Superpixels without a plane, by reason.
     pub too_few_points: usize,
     pub not_planar: usize,
+    /// Points that stand exactly at the place of another one and count once with it.
+    pub repeated: usize,
 }
 
 impl Patches {
@@ -102,15 +111,17 @@ const SEED_ROUGHNESS: f64 = 0.35;
 
 /// Finds the patches of a reconstruction.
 pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, options: &PatchOptions) -> Patches {
-    let support = thinned(&r.points, options.most_points);
+    let places = Places::of(&r.points);
+    let support = thinned(&r.points, &places.firsts, options.most_points);
     let points: Vec<Point3<f64>> = support.iter().map(|p| r.points[p.0 as usize]).collect();
+    let slots = places.slots(&support);
     let (surfaces, neighbours) = local_surfaces(&points);
     let noise = median(surfaces.iter().flatten().filter(|s| s.roughness < SEED_ROUGHNESS).map(|s| s.rms));
-    let mut found = Patches { support, points, noise, ..Patches::default() };
+    let repeated = r.points.len() - places.firsts.len();
+    let mut found = Patches { support, points, noise, repeated, ..Patches::default() };
     let mut grower = Grower::new(&found.points, surfaces, neighbours, noise);
     if let Some(lifted) = superpixels {
-        let groups = groups_in_support(lifted, &found.support, r.points.len());
-        for group in groups {
+        for group in groups_in_support(lifted, &slots) {
             match grower.add_superpixel(group) {
                 Ok(()) => {}
                 Err(RejectedGroup::TooFewPoints) => found.too_few_points += 1,
@@ -118,84 +129,136 @@ pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, opti
             }
         }
     }
-    let views = outward_hints(r, &found.support);
     let regions = grower.grow(options.fewest_points);
-    found.patches = regions.into_iter().filter_map(|members| patch(&found.points, members, &views)).collect();
-    found.views = views;
     found.cameras = r.images.iter().map(|image| image.center()).collect();
-    found.viewers = found.support.iter().map(|&p| viewers(r, p, &found.cameras)).collect();
+    found.cam_from_sfm_rotations = r.images.iter().map(|image| image.cam_from_sfm_rotation).collect();
+    found.views = outward_hints(r, &slots, &found);
+    found.viewers = viewers(r, &slots, &found);
+    found.patches = regions.into_iter().filter_map(|members| patch(&found.points, members, &found.views)).collect();
     found
 }
 
-/// Indices of an even thinning to about `most` points: one point (the first) of each cell of a grid, the cell widened until few
-/// enough are left.
-fn thinned(points: &[Point3<f64>], most: usize) -> Vec<PointIndex> {
-    let all = || (0..points.len() as u32).map(PointIndex);
-    if points.len() <= most {
-        return all().collect();
+/// Which points stand at one place. Copies are told by equal coordinates alone: in a frame of large coordinates a tolerance
+/// that takes in the rounding of a copy takes in the neighbours as well.
+struct Places {
+    /// The first point of each place, by place.
+    firsts: Vec<PointIndex>,
+    /// For each point the first one at its place.
+    first_at: Vec<PointIndex>,
+}
+
+impl Places {
+    fn of(points: &[Point3<f64>]) -> Places {
+        let mut order: Vec<PointIndex> = (0..points.len() as u32).map(PointIndex).collect();
+        let place = |i: &PointIndex| &points[i.0 as usize];
+        order.par_sort_unstable_by(|a, b| by_place(place(a), place(b)).then(a.cmp(b)));
+        let mut places = Places { firsts: Vec::with_capacity(points.len()), first_at: order.clone() };
+        for copies in order.chunk_by(|a, b| by_place(place(a), place(b)).is_eq()) {
+            places.firsts.push(copies[0]);
+            copies.iter().for_each(|i| places.first_at[i.0 as usize] = copies[0]);
+        }
+        places
     }
+
+    /// For each point where its place stands in the support.
+    fn slots(&self, support: &[PointIndex]) -> Vec<Option<u32>> {
+        let mut slot_of = vec![None; self.first_at.len()];
+        support.iter().zip(0..).for_each(|(p, slot)| slot_of[p.0 as usize] = Some(slot));
+        self.first_at.iter().map(|first| slot_of[first.0 as usize]).collect()
+    }
+}
+
+/// By x, then y, then z; the two zeros are one.
+fn by_place(a: &Point3<f64>, b: &Point3<f64>) -> Ordering {
+    let coordinate = |k: usize| (a[k] + 0.0).total_cmp(&(b[k] + 0.0));
+    coordinate(0).then_with(|| coordinate(1)).then_with(|| coordinate(2))
+}
+
+/// An even thinning of `places` (sorted) to about `most` of them: of each cell of a grid the point next to its middle, the cell
+/// widened until few enough are left.
+fn thinned(points: &[Point3<f64>], places: &[PointIndex], most: usize) -> Vec<PointIndex> {
+    if places.len() <= most {
+        return places.to_vec();
+    }
+    let place = |p: &PointIndex| &points[p.0 as usize];
     // Outliers must not set the cell: the box of the middle 96 % of a coordinate does.
     let mut low = [0.0; 3];
     let mut extent = [0.0; 3];
     for k in 0..3 {
-        let mut c: Vec<f64> = points.iter().step_by(1 + points.len() / 10_000).map(|p| p[k]).collect();
-        c.sort_by(f64::total_cmp);
-        low[k] = c[c.len() / 50];
-        extent[k] = (c[c.len() - 1 - c.len() / 50] - low[k]).max(f64::MIN_POSITIVE);
+        let mut c: Vec<f64> = places.iter().map(|p| place(p)[k]).collect();
+        let mut at = |rank: usize| *c.select_nth_unstable_by(rank, f64::total_cmp).1;
+        low[k] = at(places.len() / 50);
+        extent[k] = (at(places.len() - 1 - places.len() / 50) - low[k]).max(f64::MIN_POSITIVE);
     }
-    // A surface of area A in cells of width w meets about A / w^2 of them.
-    let area = 2.0 * (extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0]);
-    let mut width = (area / (8.0 * most as f64)).sqrt();
+    // A surface of area A in cells of width w meets about A / w^2 of them, a line of length l about l / w.
+    let longest = extent.iter().copied().fold(0.0, f64::max);
+    let [a, b, c] = extent.map(|e| e / longest);
+    let area = 2.0 * (a * b + b * c + c * a);
+    let mut width = longest * (area / (8.0 * most as f64)).sqrt().max(1.0 / most as f64);
     loop {
-        let mut seen = std::collections::HashSet::with_capacity(most * 2);
-        let cell = |p: &Point3<f64>| [0, 1, 2].map(|k| ((p[k] - low[k]) / width).floor() as i64);
-        let kept: Vec<PointIndex> = all().filter(|i| seen.insert(cell(&points[i.0 as usize]))).collect();
-        if kept.len() <= most {
+        let mut next_to_middle: HashMap<[i64; 3], (f64, PointIndex)> = HashMap::with_capacity(most * 2);
+        for &p in places {
+            let in_cells = [0, 1, 2].map(|k| (place(&p)[k] - low[k]) / width);
+            let off = in_cells.iter().map(|x| (x - x.floor() - 0.5).powi(2)).sum();
+            let kept = next_to_middle.entry(in_cells.map(|x| x.floor() as i64)).or_insert((off, p));
+            if off < kept.0 {
+                *kept = (off, p);
+            }
+        }
+        if next_to_middle.len() <= most {
+            let mut kept: Vec<PointIndex> = next_to_middle.into_values().map(|(_, p)| p).collect();
+            kept.sort_unstable_by(|a, b| by_place(place(a), place(b)));
             return kept;
         }
-        width *= (kept.len() as f64 / most as f64).sqrt().max(1.05);
+        width *= (next_to_middle.len() as f64 / most as f64).sqrt().max(1.05);
     }
 }
 
-/// The superpixels' points as indices into the support.
-fn groups_in_support(lifted: &LiftedSuperpixels, support: &[PointIndex], count: usize) -> Vec<Vec<u32>> {
-    let mut place = vec![u32::MAX; count];
-    for (i, p) in support.iter().enumerate() {
-        place[p.0 as usize] = i as u32;
-    }
+/// The superpixels' points as indices into the support, each once.
+fn groups_in_support(lifted: &LiftedSuperpixels, slots: &[Option<u32>]) -> Vec<Vec<u32>> {
     let of = |points: &[PointIndex]| -> Vec<u32> {
-        points.iter().filter_map(|p| place.get(p.0 as usize).copied()).filter(|&i| i != u32::MAX).collect()
+        let mut group: Vec<u32> = points.iter().filter_map(|p| *slots.get(p.0 as usize)?).collect();
+        group.sort_unstable();
+        group.dedup();
+        group
     };
     lifted.superpixels.iter().map(|s| of(&s.points)).filter(|g| !g.is_empty()).collect()
 }
 
-/// For each supporting point the mean direction to the cameras that saw it, or the file's own normal; zero where
-/// neither is known.
-fn outward_hints(r: &Reconstruction, support: &[PointIndex]) -> Vec<Vector3<f64>> {
-    let centers: Vec<Point3<f64>> = r.images.iter().map(|image| image.center()).collect();
-    let toward_cameras = |p: PointIndex| -> Vector3<f64> {
-        let x = r.points[p.0 as usize];
-        let to = |&(image, _): &(crate::reconstruction::ImageIndex, u32)| {
-            (centers[image.0 as usize] - x).try_normalize(0.0).unwrap_or_default()
-        };
-        r.track(p).iter().map(to).sum()
-    };
-    let hint = |&p: &PointIndex| match r.normals.get(p.0 as usize) {
-        Some(normal) if r.images.is_empty() => *normal,
-        _ if r.images.is_empty() => Vector3::zeros(),
-        _ => toward_cameras(p),
-    };
-    support.iter().map(hint).collect()
+/// For each supporting point the sum of the directions to the cameras that saw it (or a copy of it), or of the file's own
+/// normals; zero where neither is known.
+fn outward_hints(r: &Reconstruction, slots: &[Option<u32>], found: &Patches) -> Vec<Vector3<f64>> {
+    let mut hints = vec![Vector3::zeros(); found.support.len()];
+    for (i, slot) in slots.iter().enumerate() {
+        let Some(slot) = slot.map(|s| s as usize) else { continue };
+        if r.images.is_empty() {
+            hints[slot] += r.normals.get(i).copied().unwrap_or_default();
+        }
+        for (image, _) in r.track(PointIndex(i as u32)) {
+            let to_camera = found.cameras[image.0 as usize] - found.points[slot];
+            hints[slot] += to_camera.try_normalize(0.0).unwrap_or_default();
+        }
+    }
+    hints
 }
 
-/// The nearest and the farthest of the cameras that saw a point.
-fn viewers(r: &Reconstruction, p: PointIndex, cameras: &[Point3<f64>]) -> [Option<u32>; 2] {
-    let place = r.points[p.0 as usize];
-    let distance = |i: &u32| (cameras[*i as usize] - place).norm_squared();
-    let seen_by = || r.track(p).iter().map(|(image, _)| image.0);
-    let nearest = seen_by().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let farthest = seen_by().max_by(|a, b| distance(a).total_cmp(&distance(b)));
-    [nearest, farthest.filter(|_| farthest != nearest)]
+/// For each supporting point the nearest and the farthest of the cameras that saw it or a copy of it.
+fn viewers(r: &Reconstruction, slots: &[Option<u32>], found: &Patches) -> Vec<[Option<u32>; 2]> {
+    let mut viewers = vec![[None; 2]; found.support.len()];
+    for (i, slot) in slots.iter().enumerate() {
+        let Some(slot) = slot.map(|s| s as usize) else { continue };
+        let distance = |camera: u32| (found.cameras[camera as usize] - found.points[slot]).norm_squared();
+        let [nearest, farthest]: &mut [Option<u32>; 2] = &mut viewers[slot];
+        for &(image, _) in r.track(PointIndex(i as u32)) {
+            if nearest.is_none_or(|n| distance(image.0) < distance(n)) {
+                *nearest = Some(image.0);
+            }
+            if farthest.is_none_or(|f| distance(image.0) >= distance(f)) {
+                *farthest = Some(image.0);
+            }
+        }
+    }
+    viewers.into_iter().map(|[nearest, farthest]| [nearest, farthest.filter(|_| farthest != nearest)]).collect()
 }
 
 /// The patch of a region; `None` where its points lie on a line.
@@ -327,4 +390,114 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::imagery::Superpixel;
+    use crate::reconstruction::{Image, ImageIndex};
+    use crate::robust::Random;
+
+    /// Points on the sides of a box, 3 : 2 : 1, a little off them.
+    fn on_a_box(count: usize) -> Vec<Point3<f64>> {
+        let mut chance = Random::stream(3, 0);
+        let mut place = |i: usize| {
+            let mut p = Vector3::from_fn(|_, _| chance.unit());
+            p[i % 3] = f64::from(i as u32 / 3 % 2) + 0.004 * (chance.unit() - 0.5);
+            Point3::from(p.component_mul(&Vector3::new(3.0, 2.0, 1.0)))
+        };
+        (0..count).map(&mut place).collect()
+    }
+
+    fn cloud(points: Vec<Point3<f64>>) -> Reconstruction {
+        Reconstruction { points, ..Reconstruction::default() }
+    }
+
+    fn found(points: Vec<Point3<f64>>) -> Patches {
+        patches(&cloud(points), None, &PatchOptions { most_points: 2000, ..PatchOptions::default() })
+    }
+
+    fn same(a: &Patches, b: &Patches) -> bool {
+        let members = |p: &Patches| p.patches.iter().map(|p| p.members.clone()).collect::<Vec<_>>();
+        a.points == b.points && a.noise == b.noise && members(a) == members(b)
+    }
+
+    #[test]
+    fn points_at_one_place_count_once() {
+        let points = on_a_box(600);
+        let once = found(points.clone());
+        assert!(once.repeated == 0 && once.patches.len() == 6);
+        for times in [2, 5] {
+            let each = found(points.iter().flat_map(|p| vec![*p; times]).collect());
+            assert!(same(&once, &each) && each.repeated == 600 * (times - 1));
+            let behind = found(points.repeat(times));
+            assert!(same(&once, &behind));
+        }
+        assert_eq!(found(vec![Point3::new(0.0, -0.0, 1.0), Point3::new(-0.0, 0.0, 1.0)]).repeated, 1);
+    }
+
+    #[test]
+    fn the_order_of_the_file_changes_nothing() {
+        for count in [600, 6000] {
+            let mut points = on_a_box(count);
+            let once = found(points.clone());
+            assert!(once.points.len() <= 2000 && once.patches.len() >= 6);
+            points.reverse();
+            points.rotate_left(count / 3);
+            assert!(same(&once, &found(points.clone())));
+            points.extend_from_within(0..count / 2);
+            assert!(same(&once, &found(points)));
+        }
+    }
+
+    #[test]
+    fn a_point_is_seen_by_all_who_saw_its_copies() {
+        let image = |x: f64| Image { cam_from_sfm_translation: Vector3::new(-x, 0.0, 0.0), ..Image::default() };
+        let r = Reconstruction {
+            images: vec![image(3.0), image(1.0), image(2.0)],
+            points: vec![Point3::origin(), Point3::new(0.0, 5.0, 0.0), Point3::origin()],
+            track_starts: vec![0, 1, 1, 3],
+            track_elements: vec![(ImageIndex(2), 0), (ImageIndex(0), 0), (ImageIndex(1), 0)],
+            ..Reconstruction::default()
+        };
+        let found = patches(&r, None, &PatchOptions::default());
+        assert_eq!(found.support, [PointIndex(0), PointIndex(1)]);
+        assert_eq!(found.viewers, [[Some(1), Some(0)], [None, None]]);
+        assert_eq!(found.views[0], Vector3::new(3.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_copy_in_a_superpixel_is_no_second_member() {
+        let points = vec![PointIndex(0), PointIndex(1), PointIndex(2)];
+        let superpixels = vec![Superpixel { image: ImageIndex(0), label: 1, points }];
+        let lifted = LiftedSuperpixels { superpixels, ..LiftedSuperpixels::default() };
+        assert_eq!(groups_in_support(&lifted, &[Some(4), Some(4), Some(3)]), [[3, 4]]);
+    }
+
+    #[test]
+    fn clouds_without_surfaces_have_no_patches() {
+        let line = |count: usize, step: f64| (0..count).map(|i| Point3::new(i as f64 * step, 0.0, 0.0)).collect();
+        for count in [0, 1, 2, 3, 20, 5000] {
+            assert!(found(vec![Point3::new(1.0, 2.0, 3.0); count]).patches.is_empty());
+            for step in [1.0, 1e-300, 1e300, 1e304] {
+                let found = found(line(count, step));
+                assert!(
+                    found.patches.is_empty() && found.points.len() >= count.min(1000),
+                    "{count} points, {step} apart"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn points_at_the_end_of_the_numbers_do_no_harm() {
+        for huge in [1e160, 1e300, f64::MAX] {
+            let mut points = on_a_box(600);
+            points.extend([Point3::new(huge, 0.0, 0.0), Point3::new(-huge, huge, 0.0), Point3::new(0.0, -huge, huge)]);
+            let found = found(points);
+            assert_eq!(found.patches.len(), 6, "{huge}");
+            assert!(found.patches.iter().all(|p| p.fit.rms < 0.01));
+        }
+    }
 }

@@ -6,7 +6,11 @@ mod exposure;
 mod facet_grid;
 mod fit;
 mod patches;
+<<<<<<< HEAD
 mod prepared_city;
+=======
+mod up_votes;
+>>>>>>> be53ba2 (planes: find up by walls, floors, cameras and start together)
 mod upright;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
@@ -15,4 +19,4 @@ pub use facet_grid::{FacetGrid, Hit, Probe};
 pub use fit::{FittedPlane, fit_plane, fit_plane_robustly};
 pub use prepared_city::PreparedCity;
 pub use patches::{Patch, PatchOptions, Patches, RejectedGroup, patches};
-pub use upright::{Upright, estimate_up};
+pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start, up_candidates};

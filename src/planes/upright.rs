@@ -1,113 +1,250 @@
-//! Which way is up in the reconstruction, from walls that stand and floors that lie.
+//! Which way is up in the reconstruction: what the start, walls and floors, and the cameras say of it together.
 //!
-//! Question     the direction of up in the sfm frame, better than the start knows it
-//! Input        patches, a first guess of up and how far it may be off
-//! Output       [`Upright`]: the direction and its standard deviation
-//! Method       each patch votes for directions across its normal (a wall) or along it (a floor), with a bounded kernel so that
-//!              sloping roofs do not count; the best of a grid of directions round the guess is polished by reweighted
-//!              least squares
-//! Assumptions  most patches are upright or level
-//! Fails when   neither walls nor floors are seen: then the guess comes back with its own sigma
+//! Question     the directions that up may have in the sfm frame, and how surely
+//! Input        patches, the cameras' rotations, the start's up and how far it may be off
+//! Output       [`UpChoice`]: the directions to search under, or that nothing but the start is known
+//! Method       1. the share of patches and cameras that are for it grades a grid of directions within the start's reach;
+//!              2. the best are polished by reweighted least squares, all voters and the start together; the start stays a
+//!                 Gaussian about what it said, wherever the polish has come to;
+//!              3. all distinct optima of comparable support are told: a facade that is seen from the street is the same
+//!                 geometry as a floor seen from the air, and the sides of a box are alike.
+//!              The sigma is that of the worse held axis, of voters and start together: walls of one direction leave the lean
+//!              along them to the cameras, and these the lean in which they look to the walls.
+//! Fails when   there are neither walls, floors nor cameras: then the start's up comes back with its own sigma
 
-use super::patches::Patch;
+use std::f64::consts::{PI, TAU};
+
+use rayon::prelude::*;
+
+use super::patches::Patches;
+use super::up_votes::UpVotes;
 use crate::geometry::{Matrix3, Vector3};
 
 /// Up in the sfm frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Upright {
     pub up: Vector3<f64>,
-    /// About each horizontal axis.
+    /// About the worse held of the horizontal axes.
     pub sigma_rad: f64,
     /// Whether a search may take it for granted.
     pub known: bool,
 }
 
-/// A wall this far from upright (or a floor from level) still votes, with a weight that has fallen to a half.
-const KERNEL_RAD: f64 = 0.035;
-/// Directions of the first search are this far apart; two thirds of the kernel, so that none falls between.
-const STEP_RAD: f64 = 0.02;
-/// Walls are built to this, and a polished estimate is never believed to be better.
-const BEST_SIGMA_RAD: f64 = 0.005;
+/// A direction that up may have, and who is for it.
+#[derive(Clone, Copy, Debug)]
+pub struct UpCandidate {
+    pub up: Vector3<f64>,
+    /// About the worse held of the horizontal axes; of walls, floors, cameras and start together.
+    pub sigma_rad: f64,
+    /// Share of the walls and floors that are for it, 0 to 1.
+    pub patches: f64,
+    /// Share of the cameras that are for it, 0 to 1.
+    pub cameras: f64,
+    /// How far it is from the start's up, in sigmas of the start.
+    pub off_start: f64,
+}
+
+/// How to search.
+#[derive(Clone, Debug)]
+pub enum UpChoice {
+    /// Under each of these, the best supported first; one at least.
+    Known(Vec<Upright>),
+    /// Free to turn as far as the start may lean.
+    Free(Upright),
+}
+
 /// Up worse than this is not known: three sigmas of it are what the normals of a right pair of patch and plane may differ by.
 const KNOWN_SIGMA_RAD: f64 = 0.04;
+/// A search under each of more directions than this costs what turning freely does (measured on the sample: 2 s against 20 s).
+const MOST_KNOWN: usize = 3;
+/// A search looks out to three sigmas of the start and not beyond.
+const REACH_SIGMAS: f64 = 3.0;
+/// A start that claims to be exact is still only as good as this.
+const SMALLEST_SIGMA_RAD: f64 = 1e-4;
+/// Directions of the grid are this far apart: one of them lies within half a kernel of every optimum.
+const STEP_RAD: f64 = 0.03;
+/// Nearer than this one polish serves for both.
+const SEEDS_APART_RAD: f64 = 0.09;
+/// An optimum that holds one axis only is a great circle, of 35 seeds; there is room for others beside it.
+const MOST_SEEDS: usize = 60;
+const MOST_STEPS: usize = 15;
+/// What lies further off no kernel has seen.
+const LONGEST_STEP_RAD: f64 = 0.2;
+/// Optima are distinct beyond so many of their common sigmas ...
+const DISTINCT_SIGMAS: f64 = 3.0;
+/// ... and comparable with at least this share of the best one's support: level photographs of one facade support it as a floor, seen by
+/// cameras that are turned by a quarter, with 0.6 to 0.8 of the right support.
+const COMPARABLE: f64 = 0.6;
+/// What leaving the start costs for each squared sigma: all of its reach as much as half of one kind of voters.
+const COST_OF_LEAVING: f64 = 0.05;
 
-/// Polishes `guess`, looking as far as three of its sigmas.
-pub fn estimate_up(patches: &[Patch], guess: &Upright) -> Upright {
-    let votes: Vec<(Vector3<f64>, f64)> =
-        patches.iter().map(|p| (p.fit.plane.normal, (p.members.len() as f64).sqrt())).collect();
-    let (e1, e2) = across(&guess.up);
-    let steps = (3.0 * guess.sigma_rad / STEP_RAD).ceil() as i32;
-    let mut best = (score(&votes, &guess.up), guess.up);
-    for i in -steps..=steps {
-        for j in -steps..=steps {
-            let up = (guess.up + STEP_RAD * (f64::from(i) * e1 + f64::from(j) * e2)).normalize();
-            let score = score(&votes, &up);
-            if score > best.0 {
-                best = (score, up);
-            }
+/// Decides how to search, from the start's up and its sigma on.
+pub fn choose_up(patches: &Patches, start: &Upright) -> UpChoice {
+    let candidates = up_candidates(patches, start);
+    // To search under some would leave out others that are as likely.
+    let all_known = candidates.iter().all(|c| c.sigma_rad <= KNOWN_SIGMA_RAD);
+    if candidates.is_empty() || candidates.len() > MOST_KNOWN || !all_known {
+        return UpChoice::Free(Upright { known: false, ..*start });
+    }
+    let upright = |c: UpCandidate| Upright { up: c.up, sigma_rad: c.sigma_rad, known: true };
+    UpChoice::Known(candidates.into_iter().map(upright).collect())
+}
+
+/// The up that walls, floors and cameras are for, where it lies beyond the start's reach and nothing within is comparable.
+pub fn up_beyond_start(patches: &Patches, start: &Upright) -> Option<UpCandidate> {
+    let anywhere = Upright { sigma_rad: PI, ..*start };
+    let best = up_candidates(patches, &anywhere).into_iter().next()?;
+    let support = |c: &UpCandidate| c.patches + c.cameras;
+    let within = up_candidates(patches, start).iter().map(support).fold(0.0, f64::max);
+    let off_start = start.up.angle(&best.up) / start.sigma_rad.max(SMALLEST_SIGMA_RAD);
+    let is_beyond = off_start > REACH_SIGMAS && within < COMPARABLE * support(&best);
+    is_beyond.then_some(UpCandidate { off_start, ..best })
+}
+
+/// The directions that walls, floors, cameras and start together allow, the best supported first.
+pub fn up_candidates(patches: &Patches, start: &Upright) -> Vec<UpCandidate> {
+    let evidence = Evidence {
+        patches: UpVotes::of_patches(patches),
+        cameras: UpVotes::of_cameras(&patches.cam_from_sfm_rotations),
+        start: Upright { sigma_rad: start.sigma_rad.max(SMALLEST_SIGMA_RAD), ..*start },
+    };
+    let polished: Vec<Optimum> = evidence.seeds().into_par_iter().map(|up| evidence.polished(up)).collect();
+    let within_reach = |o: &Optimum| evidence.off_start(&o.up) <= REACH_SIGMAS;
+    let mut optima: Vec<Optimum> = polished.into_iter().filter(within_reach).collect();
+    optima.sort_by(|a, b| b.support.total_cmp(&a.support));
+    let mut distinct: Vec<Optimum> = Vec::new();
+    for optimum in optima {
+        let least = distinct.first().map_or(f64::NEG_INFINITY, |best| COMPARABLE * best.support);
+        if optimum.support >= least && distinct.iter().all(|d| d.differs_from(&optimum)) {
+            distinct.push(optimum);
         }
     }
-    let mut up = best.1;
-    let mut sigma = guess.sigma_rad;
-    for _ in 0..10 {
-        let Some((next, s)) = polish(&votes, &up, guess.sigma_rad) else { break };
-        (up, sigma) = (next, s);
-    }
-    let sigma_rad = sigma.clamp(BEST_SIGMA_RAD.min(guess.sigma_rad), guess.sigma_rad);
-    Upright { up, sigma_rad, known: sigma_rad <= KNOWN_SIGMA_RAD }
+    let told = |o: Optimum| UpCandidate {
+        up: o.up,
+        sigma_rad: o.tangent().worst_variance().sqrt(),
+        patches: evidence.patches.share(&o.up),
+        cameras: evidence.cameras.share(&o.up),
+        off_start: evidence.off_start(&o.up),
+    };
+    distinct.into_iter().map(told).collect()
 }
 
-/// How far a patch is from being a wall or a floor under `up`, whichever is nearer: the sine of the angle, and its
-/// gradient with respect to `up`.
-fn misfit(normal: &Vector3<f64>, up: &Vector3<f64>) -> (Vector3<f64>, bool) {
-    let along = normal.dot(up);
-    if along.abs() < std::f64::consts::FRAC_1_SQRT_2 { (normal * along, true) } else { (up - normal * along, false) }
+struct Evidence {
+    patches: UpVotes,
+    cameras: UpVotes,
+    start: Upright,
 }
 
-fn score(votes: &[(Vector3<f64>, f64)], up: &Vector3<f64>) -> f64 {
-    let kernel = |e_sq: f64| 1.0 / (1.0 + e_sq / (KERNEL_RAD * KERNEL_RAD));
-    votes.iter().map(|(n, w)| w * kernel(misfit(n, up).0.norm_squared()).powi(2)).sum()
+impl Evidence {
+    fn off_start(&self, up: &Vector3<f64>) -> f64 {
+        self.start.up.angle(up) / self.start.sigma_rad
+    }
+
+    fn support(&self, up: &Vector3<f64>) -> f64 {
+        self.patches.share(up) + self.cameras.share(up) - COST_OF_LEAVING * self.off_start(up).powi(2)
+    }
+
+    /// Directions to polish, the best supported first.
+    fn seeds(&self) -> Vec<Vector3<f64>> {
+        let mut graded: Vec<(f64, Vector3<f64>)> =
+            self.grid().into_par_iter().map(|up| (self.support(&up), up)).collect();
+        graded.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut seeds: Vec<Vector3<f64>> = Vec::new();
+        for (_, up) in graded {
+            if seeds.len() < MOST_SEEDS && seeds.iter().all(|s| s.angle(&up) > SEEDS_APART_RAD) {
+                seeds.push(up);
+            }
+        }
+        seeds
+    }
+
+    /// Directions within the start's reach, evenly on rings about its up.
+    fn grid(&self) -> Vec<Vector3<f64>> {
+        let at_start = Tangent::across(&self.start.up, &Matrix3::zeros());
+        let reach = (REACH_SIGMAS * self.start.sigma_rad).min(PI);
+        let mut grid = Vec::new();
+        for ring in 0..=(reach / STEP_RAD).ceil() as usize {
+            let (sin, cos) = (ring as f64 * STEP_RAD).min(reach).sin_cos();
+            let count = (TAU * sin / STEP_RAD).ceil().max(1.0) as usize;
+            for k in 0..count {
+                let (s, c) = (TAU * k as f64 / count as f64).sin_cos();
+                grid.push(cos * self.start.up + sin * (c * at_start.axes[0] + s * at_start.axes[1]));
+            }
+        }
+        grid
+    }
+
+    /// Reweighted least squares of all voters and the start, from `up` on.
+    fn polished(&self, mut up: Vector3<f64>) -> Optimum {
+        let prior = self.start.sigma_rad.powi(-2);
+        let mut information = Matrix3::zeros();
+        for _ in 0..MOST_STEPS {
+            let of_voters = self.patches.information(&up) + self.cameras.information(&up);
+            information = of_voters + Matrix3::identity() * prior;
+            // Along the arc to the start's up, so that a far start pulls by its distance.
+            let arc = (self.start.up - up * up.dot(&self.start.up)).try_normalize(0.0).unwrap_or_default();
+            let pull = arc * self.start.up.angle(&up) * prior - of_voters * up;
+            let step = Tangent::across(&up, &information).solved(&pull);
+            let step = step * (LONGEST_STEP_RAD / step.norm()).min(1.0);
+            up = (up + step).normalize();
+            if step.norm() < 1e-9 {
+                break;
+            }
+        }
+        Optimum { up, information, support: self.support(&up) }
+    }
 }
 
-/// One step of reweighted least squares on the two angles of `up`, and its standard deviation.
-fn polish(votes: &[(Vector3<f64>, f64)], up: &Vector3<f64>, prior_sigma: f64) -> Option<(Vector3<f64>, f64)> {
-    let mut normal_matrix = Matrix3::zeros();
-    let (mut weights, mut squares) = (0.0, 0.0);
-    for (n, w) in votes {
-        let (e, wall) = misfit(n, up);
-        let robust = w / (1.0 + e.norm_squared() / (KERNEL_RAD * KERNEL_RAD)).powi(2);
-        // A wall asks for n . up = 0, a floor for n x up = 0: the quadratic forms of up that they make small.
-        let form = n * n.transpose();
-        normal_matrix += robust * if wall { form } else { Matrix3::identity() - form };
-        weights += robust;
-        squares += robust * e.norm_squared();
-    }
-    if weights == 0.0 {
-        return None;
-    }
-    let (e1, e2) = across(up);
-    let at = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(&(normal_matrix * b));
-    // Where only one direction of walls is seen, up may lean along them: the prior holds it there.
-    let variance = (squares / weights).max(BEST_SIGMA_RAD * BEST_SIGMA_RAD);
-    let damping = variance / (prior_sigma * prior_sigma);
-    let (h11, h12, h22) = (at(&e1, &e1) + damping, at(&e1, &e2), at(&e2, &e2) + damping);
-    let (g1, g2) = (at(&e1, up), at(&e2, up));
-    let det = h11 * h22 - h12 * h12;
-    if det <= 0.0 {
-        return None;
-    }
-    let next = up - e1 * ((h22 * g1 - h12 * g2) / det) - e2 * ((h11 * g2 - h12 * g1) / det);
-    let worst = (h11 + h22) / 2.0 - (((h11 - h22) / 2.0).powi(2) + h12 * h12).sqrt();
-    Some((next.try_normalize(0.0)?, (variance / worst.max(f64::MIN_POSITIVE)).sqrt()))
+/// An up that those about it do not better.
+struct Optimum {
+    up: Vector3<f64>,
+    /// Of voters and start, 1 / rad^2.
+    information: Matrix3<f64>,
+    support: f64,
 }
 
-/// Two unit vectors across `up` and each other.
-fn across(up: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-    let least = up.iamin();
-    let mut axis = Vector3::zeros();
-    axis[least] = 1.0;
-    let e1 = up.cross(&axis).normalize();
-    (e1, up.cross(&e1))
+impl Optimum {
+    fn tangent(&self) -> Tangent {
+        Tangent::across(&self.up, &self.information)
+    }
+
+    fn differs_from(&self, other: &Optimum) -> bool {
+        let Some(along) = (other.up - self.up).try_normalize(0.0) else { return false };
+        let variance = |o: &Optimum| along.dot(&o.tangent().solved(&along));
+        self.up.angle(&other.up) > DISTINCT_SIGMAS * (variance(self) + variance(other)).sqrt()
+    }
+}
+
+/// A quadratic form restricted to the plane across up.
+struct Tangent {
+    axes: [Vector3<f64>; 2],
+    /// h11, h12, h22.
+    form: [f64; 3],
+}
+
+impl Tangent {
+    fn across(up: &Vector3<f64>, form: &Matrix3<f64>) -> Tangent {
+        let mut axis = Vector3::zeros();
+        axis[up.iamin()] = 1.0;
+        let e1 = up.cross(&axis).normalize();
+        let e2 = up.cross(&e1);
+        Tangent { axes: [e1, e2], form: [e1.dot(&(form * e1)), e1.dot(&(form * e2)), e2.dot(&(form * e2))] }
+    }
+
+    /// The vector across up that the form maps to `b`.
+    fn solved(&self, b: &Vector3<f64>) -> Vector3<f64> {
+        let ([e1, e2], [h11, h12, h22]) = (self.axes, self.form);
+        let (b1, b2) = (e1.dot(b), e2.dot(b));
+        let det = (h11 * h22 - h12 * h12).max(f64::MIN_POSITIVE);
+        e1 * ((h22 * b1 - h12 * b2) / det) + e2 * ((h11 * b2 - h12 * b1) / det)
+    }
+
+    /// The variance about the worse held axis, where the form is information.
+    fn worst_variance(&self) -> f64 {
+        let [h11, h12, h22] = self.form;
+        let least = (h11 + h22) / 2.0 - ((h11 - h22) / 2.0).hypot(h12);
+        1.0 / least.max(f64::MIN_POSITIVE)
+    }
 }
 
 #[cfg(test)]
@@ -115,32 +252,133 @@ mod tests {
     use super::*;
     use crate::geometry::{Point3, Rotation3};
     use crate::planes::fit::fit_plane;
+    use crate::planes::patches::Patch;
+    use crate::robust::Random;
+
+    const DEGREE: f64 = PI / 180.0;
+
+    /// A scene of `turn`ed walls, floors and cameras; directions are told with z up.
+    struct Turned(Rotation3<f64>);
+
+    impl Turned {
+        fn up(&self) -> Vector3<f64> {
+            self.0 * Vector3::z()
+        }
+
+        fn scene(&self, normals: &[[f64; 3]], cameras: &[Rotation3<f64>]) -> Patches {
+            let patch = |&[x, y, z]: &[f64; 3]| facing(self.0 * Vector3::new(x, y, z).normalize());
+            Patches {
+                patches: normals.iter().map(patch).collect(),
+                cam_from_sfm_rotations: cameras.iter().map(|r| r * self.0.inverse()).collect(),
+                ..Patches::default()
+            }
+        }
+
+        fn off(&self, candidate: &Vector3<f64>) -> f64 {
+            candidate.angle(&self.up()) / DEGREE
+        }
+    }
 
     fn facing(normal: Vector3<f64>) -> Patch {
-        let (a, b) = across(&normal);
+        let [a, b] = Tangent::across(&normal, &Matrix3::zeros()).axes;
         let corners = [a, b, -a, -b, 0.5 * a, 0.5 * b, -0.5 * a, -0.5 * b];
-        let fit = fit_plane(corners.iter().map(|c| Point3::from(*c))).unwrap();
+        let mut fit = fit_plane(corners.iter().map(|c| Point3::from(*c))).unwrap();
+        fit.plane.normal = normal;
         Patch { members: (0..8).collect(), fit, sided: true }
     }
 
+    /// A camera that looks along a heading (degrees from y to the right), up by `pitch` and turned about its view by `roll`.
+    fn held(heading: f64, pitch: f64, roll: f64) -> Rotation3<f64> {
+        let level = Rotation3::from_axis_angle(&Vector3::x_axis(), PI / 2.0);
+        let turn = |axis, degrees: f64| Rotation3::from_axis_angle(&axis, degrees * DEGREE);
+        turn(Vector3::z_axis(), roll) * turn(Vector3::x_axis(), -pitch) * level * turn(Vector3::z_axis(), heading)
+    }
+
+    fn start(up: Vector3<f64>, sigma_deg: f64) -> Upright {
+        Upright { up, sigma_rad: sigma_deg * DEGREE, known: false }
+    }
+
+    const BLOCK: [[f64; 3]; 6] =
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.2, 0.0], [0.0, 0.0, 1.0], [0.7, 0.0, 0.7], [0.0, -0.6, 0.8]];
+
     #[test]
     fn finds_up_among_walls_floors_and_roofs() {
-        let turn = Rotation3::from_euler_angles(0.05, -0.04, 0.3);
-        let normals =
-            [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.2, 0.0), (0.0, 0.0, 1.0), (0.7, 0.0, 0.7), (0.0, -0.6, 0.8)];
-        let patches: Vec<Patch> =
-            normals.iter().map(|&(x, y, z)| facing(turn * Vector3::new(x, y, z).normalize())).collect();
-        let found = estimate_up(&patches, &Upright { up: Vector3::z(), sigma_rad: 0.035, known: false });
-        assert!(found.up.angle(&(turn * Vector3::z())) < 2e-3, "{}", found.up.angle(&(turn * Vector3::z())));
-        assert!(found.sigma_rad < 0.035 && found.known);
+        let turned = Turned(Rotation3::from_euler_angles(0.05, -0.04, 0.3));
+        let found = up_candidates(&turned.scene(&BLOCK, &[]), &start(Vector3::z(), 2.0));
+        assert_eq!(found.len(), 1);
+        let sigma_deg = found[0].sigma_rad / DEGREE;
+        assert!(turned.off(&found[0].up) < sigma_deg && sigma_deg < 1.2, "{} of {sigma_deg}", turned.off(&found[0].up));
     }
 
     #[test]
-    fn keeps_the_guess_where_nothing_votes() {
-        let guess = Upright { up: Vector3::new(0.0, 0.6, 0.8), sigma_rad: 0.3, known: false };
-        let found = estimate_up(&[], &guess);
-        assert_eq!(found.sigma_rad, guess.sigma_rad);
-        assert!(!found.known);
-        assert!(found.up.angle(&guess.up) < 0.2);
+    fn walls_of_one_direction_leave_up_along_them_to_the_start() {
+        let turned = Turned(Rotation3::from_euler_angles(0.4, -1.1, 2.0));
+        let street = [[1.0, 0.0, 0.0], [1.0, 0.01, 0.02], [-1.0, 0.01, 0.0], [1.0, 0.02, -0.01], [-1.0, 0.0, 0.01]];
+        let said = Rotation3::from_axis_angle(&Vector3::x_axis(), 3.0 * DEGREE) * Vector3::z();
+        let found = up_candidates(&turned.scene(&street, &[]), &start(turned.0 * said, 2.0));
+        assert_eq!(found.len(), 1);
+        assert!((turned.off(&found[0].up) - 3.0).abs() < 0.3, "{} degrees off", turned.off(&found[0].up));
+        assert!((found[0].sigma_rad - 2.0 * DEGREE).abs() < 0.2 * DEGREE, "{} degrees", found[0].sigma_rad / DEGREE);
+    }
+
+    #[test]
+    fn cameras_on_a_street_hold_the_axis_that_its_walls_do_not() {
+        let turned = Turned(Rotation3::from_euler_angles(-2.0, 0.3, 1.0));
+        let street = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.01], [1.0, 0.02, 0.0]];
+        let facing_walls = [85.0, 92.0, 97.0, 88.0, -90.0].map(|heading| held(heading, 5.0, heading % 2.0));
+        let start = start(turned.0 * Vector3::new(0.1, -0.2, 1.0).normalize(), 10.0);
+        let alone = up_candidates(&turned.scene(&street, &[]), &start);
+        assert!(alone[0].sigma_rad > KNOWN_SIGMA_RAD);
+        let UpChoice::Known(found) = choose_up(&turned.scene(&street, &facing_walls), &start) else {
+            panic!("not known")
+        };
+        assert!(turned.off(&found[0].up) < 3.0 * found[0].sigma_rad / DEGREE);
+    }
+
+    #[test]
+    fn level_cameras_tell_up_to_a_start_that_knows_nothing_of_tilt() {
+        let turned = Turned(Rotation3::from_euler_angles(1.9, 0.8, -0.6));
+        let mut chance = Random::stream(7, 0);
+        let mut askew = |sigma: f64| sigma * (0..12).map(|_| chance.unit() - 0.5).sum::<f64>();
+        let portrait_too = |k: i32, roll: f64| if k % 4 == 0 { roll + 90.0 } else { roll };
+        let cameras: Vec<_> =
+            (0..12).map(|k| held(f64::from(k) * 30.0, 10.0 + askew(8.0), portrait_too(k, askew(1.5)))).collect();
+        let UpChoice::Known(found) = choose_up(&turned.scene(&[], &cameras), &start(Vector3::z(), 60.0)) else {
+            panic!("not known")
+        };
+        assert_eq!(found.len(), 1);
+        assert!(turned.off(&found[0].up) < 3.0 * found[0].sigma_rad / DEGREE, "{}", turned.off(&found[0].up));
+    }
+
+    #[test]
+    fn tells_every_up_of_a_box_when_only_the_box_is_known() {
+        let turned = Turned(Rotation3::from_euler_angles(0.7, 0.1, 0.2));
+        let mut scene = turned.scene(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &[]);
+        scene.patches.iter_mut().for_each(|p| p.sided = false);
+        assert_eq!(up_candidates(&scene, &start(Vector3::z(), 90.0)).len(), 6);
+        assert!(matches!(choose_up(&scene, &start(Vector3::z(), 90.0)), UpChoice::Free(_)));
+        let near = start(turned.0 * Vector3::new(0.1, 0.1, 1.0).normalize(), 5.0);
+        assert!(matches!(choose_up(&scene, &near), UpChoice::Known(found) if turned.off(&found[0].up) < 0.5));
+    }
+
+    #[test]
+    fn keeps_the_start_where_nothing_votes() {
+        for sigma_deg in [0.0, 0.5, 17.0, 1e9] {
+            let start = start(Vector3::new(0.0, 0.6, 0.8), sigma_deg);
+            let found = up_candidates(&Patches::default(), &start);
+            assert_eq!(found.len(), 1);
+            assert!(found[0].up.angle(&start.up) < 1e-6);
+            assert!((found[0].sigma_rad - start.sigma_rad.max(SMALLEST_SIGMA_RAD)).abs() <= 1e-6 * found[0].sigma_rad);
+        }
+    }
+
+    #[test]
+    fn tells_an_up_that_the_start_rules_out() {
+        let turned = Turned(Rotation3::from_euler_angles(0.5, 0.0, 0.0));
+        let cameras: Vec<_> = (0..8).map(|k| held(f64::from(k) * 45.0, 5.0, 0.0)).collect();
+        let scene = turned.scene(&BLOCK, &cameras);
+        let beyond = up_beyond_start(&scene, &start(Vector3::z(), 2.0)).unwrap();
+        assert!(turned.off(&beyond.up) < 1.0 && beyond.off_start > 3.0);
+        assert!(up_beyond_start(&scene, &start(Vector3::z(), 20.0)).is_none());
     }
 }

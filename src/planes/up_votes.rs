@@ -21,8 +21,9 @@ pub struct UpVotes {
     habits: Habits,
 }
 
-/// How well a kind of voters keeps to up. All chosen; on 89 whole and cut captures with known up (3 to 48 photographs) the errors of
-/// the resulting up had a median of 0.4 to 0.8 and a greatest of 1.7 of its sigmas.
+/// How well a kind of voters keeps to up. All chosen. Measured with them: on 173 captures with known up (whole or cut to 3 to 8 photographs
+/// in a row, or clouds without cameras), seven starts each, the errors of up were 0.7 of its sigmas in the median, 2.0 at 95 % and
+/// 3.5 at most; nine pairs of real captures of one place differed by at most 1.9 of theirs.
 struct Habits {
     /// A voter this far off still votes, with a weight that has fallen to a quarter.
     kernel_rad: f64,

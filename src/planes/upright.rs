@@ -252,7 +252,8 @@ mod tests {
     use super::*;
     use crate::geometry::{Point3, Rotation3};
     use crate::planes::fit::fit_plane;
-    use crate::planes::patches::Patch;
+    use crate::planes::patches::{Patch, PatchOptions, patches};
+    use crate::reconstruction::{ImageIndex, PointIndex, Reconstruction, read_reconstruction};
     use crate::robust::Random;
 
     const DEGREE: f64 = PI / 180.0;
@@ -370,6 +371,47 @@ mod tests {
             assert!(found[0].up.angle(&start.up) < 1e-6);
             assert!((found[0].sigma_rad - start.sigma_rad.max(SMALLEST_SIGMA_RAD)).abs() <= 1e-6 * found[0].sigma_rad);
         }
+    }
+
+    #[test]
+    fn photographs_of_the_sample_tell_up_whatever_the_start_knows() {
+        let sample = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample/sfm");
+        let whole = read_reconstruction(&sample).unwrap();
+        // From the alignment of the whole sample.
+        let up = Vector3::new(-0.4583, -0.8572, 0.2349).normalize();
+        for (first, count) in [(0, whole.images.len()), (0, 5), (0, 8), (3, 3)] {
+            let scene = patches(&of_images(&whole, first..first + count), None, &PatchOptions::default());
+            for sigma_deg in [2.0, 10.0, 60.0] {
+                let lean = Rotation3::from_axis_angle(&Vector3::z_axis(), sigma_deg * DEGREE);
+                let found = up_candidates(&scene, &start(lean * up, sigma_deg));
+                let nearest = found.iter().min_by(|a, b| a.up.angle(&up).total_cmp(&b.up.angle(&up))).unwrap();
+                let off = nearest.up.angle(&up);
+                assert!(
+                    off < 3.0 * nearest.sigma_rad && nearest.sigma_rad < KNOWN_SIGMA_RAD,
+                    "{count}: {off} {nearest:?}"
+                );
+            }
+        }
+    }
+
+    /// What the images of a range alone would have made of the scene: the points that two of them saw.
+    fn of_images(r: &Reconstruction, range: std::ops::Range<usize>) -> Reconstruction {
+        let mut cut = Reconstruction {
+            cameras: r.cameras.clone(),
+            images: r.images[range.clone()].to_vec(),
+            track_starts: vec![0],
+            ..Reconstruction::default()
+        };
+        for (i, point) in r.points.iter().enumerate() {
+            let seen = r.track(PointIndex(i as u32)).iter().filter(|(image, _)| range.contains(&(image.0 as usize)));
+            let track: Vec<_> = seen.map(|&(image, o)| (ImageIndex(image.0 - range.start as u32), o)).collect();
+            if track.len() > 1 {
+                cut.points.push(*point);
+                cut.track_elements.extend(track);
+                cut.track_starts.push(cut.track_elements.len() as u32);
+            }
+        }
+        cut
     }
 
     #[test]

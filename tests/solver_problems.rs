@@ -1,12 +1,8 @@
 //! Whole problems: the golden vectors, every scenario of points, lines and planes, degenerate and hostile input.
 
-<<<<<<< HEAD
-use cityweld::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
-=======
 mod needs;
 
-use cityweld::geometry::{Matrix3, Rotation3, Vector3};
->>>>>>> 677ce0b (tests: fail under CITYWELD_REQUIRE_DATA instead of skipping)
+use cityweld::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 use cityweld::solvers::primitives::{ObjectPrimitive, SensorPrimitive, rows_of};
 use cityweld::solvers::problem::{Refusal, parse_problem, solve_json};
 use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, pose, sample, up};

@@ -8,7 +8,7 @@ use crate::correspondence::{Candidate, Hypotheses, Refiner, Scene, candidates, j
 use crate::geometry::{Similarity, Start, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
-use crate::planes::{PatchOptions, PreparedCity, Upright, estimate_up, patches};
+use crate::planes::{PatchOptions, Patches, PreparedCity, UpChoice, Upright, choose_up, patches};
 use crate::reconstruction::Reconstruction;
 use crate::verdict::{Alignment, judge};
 
@@ -106,11 +106,14 @@ impl<'a> View<'a> {
 }
 
 /// The ways of taking up that are searched.
-fn uprights(patches: &crate::planes::Patches, start: &Start, up: Up) -> Vec<Upright> {
+fn uprights(patches: &Patches, start: &Start, up: Up) -> Vec<Upright> {
     let up_of_start = start.city_from_sfm().rotation.inverse() * Vector3::z();
     let guess = Upright { up: up_of_start, sigma_rad: start.sigmas().tilt_rad, known: false };
     match up {
-        Up::Auto => vec![estimate_up(&patches.patches, &guess)],
+        Up::Auto => match choose_up(patches, &guess) {
+            UpChoice::Known(all) => all,
+            UpChoice::Free(up) => vec![up],
+        },
         Up::None => vec![guess],
         Up::Given(up) => {
             vec![Upright { up: up.try_normalize(0.0).unwrap_or(guess.up), sigma_rad: 0.0, known: true }]

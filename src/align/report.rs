@@ -88,7 +88,10 @@ fn evidence_of_planes(rows: &[ProbeOnPlane], city: &PreparedCity) -> Vec<PlaneEv
 
 fn warnings(patches: &Patches) -> Vec<String> {
     let mut warnings = Vec::new();
-    let Patches { too_few_points, not_planar, cameras, .. } = patches;
+    let Patches { too_few_points, not_planar, repeated, cameras, .. } = patches;
+    if *repeated > 0 {
+        warnings.push(format!("{repeated} points stand at the place of another and count once"));
+    }
     if *too_few_points + *not_planar > 0 {
         warnings.push(format!(
             "superpixels without a plane: {too_few_points} with too few points, {not_planar} not planar"

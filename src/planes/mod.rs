@@ -6,11 +6,8 @@ mod exposure;
 mod facet_grid;
 mod fit;
 mod patches;
-<<<<<<< HEAD
 mod prepared_city;
-=======
 mod up_votes;
->>>>>>> be53ba2 (planes: find up by walls, floors, cameras and start together)
 mod upright;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};

@@ -365,6 +365,21 @@ fn says_what_it_is() {
 }
 
 #[test]
+fn an_alignment_is_a_start() {
+    let room = room();
+    let labels = sample("labels");
+    let first = cityweld(&room, &Align::with(&["--labels", &labels]).args());
+    assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
+    let again = Align { start: Some("out/alignment.json".into()), out: "again", ..Align::with(&["--labels", &labels]) };
+    let second = cityweld(&room, &again.args());
+    assert_eq!(second.status.code(), Some(0), "{}{}", stdout(&second), stderr(&second));
+    let merge = r#"{"schema": "cityweld.merge/1", "parts": []}"#;
+    std::fs::write(room.path().join("merge.json"), merge).unwrap();
+    let align = Align { start: Some("merge.json".into()), ..Align::with(&["--force"]) };
+    align.refused(&room, &["the report of a merge", "merge.json"]);
+}
+
+#[test]
 fn a_closed_standard_output_is_no_panic() {
     let room = room();
     let city = sample("city.obj");

@@ -80,7 +80,8 @@ pub struct Common {
     A start file: {\"scale\": 12.5, \"rotation\": [[1,0,0],[0,1,0],[0,0,1]], \"translation\": [100, 200, 3],\n  \
     \"position_sigma\": 10, \"height_sigma\": 3, \"rotation_sigma_deg\": 10, \"tilt_sigma_deg\": 2, \"scale_sigma\": 0.15}\n\
     It says x_city = scale * rotation * x_sfm + translation (metres, rotation row by row), and how far that may be off, one\n\
-    sigma each: metres horizontally and along up, degrees of heading and of tilt, natural logarithm of the scale.")]
+    sigma each: metres horizontally and along up, degrees of heading and of tilt, natural logarithm of the scale. The\n\
+    alignment.json of an earlier run does, too: by its transform, or else its best_candidate.")]
 pub struct AlignArgs {
     /// City model: OBJ, glTF or GLB
     pub city: PathBuf,
@@ -89,7 +90,7 @@ pub struct AlignArgs {
     /// Folder to make; must not exist (see --force)
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Coarse place of the reconstruction, JSON (see below)
+    /// Coarse place of the reconstruction, JSON (see below), or the alignment.json of an earlier run
     #[arg(long, value_name = "FILE")]
     pub start: Option<PathBuf>,
     /// Search around a place of the city frame, X,Y[,Z],RADIUS in metres (not built yet: give --start)
@@ -150,7 +151,7 @@ pub struct MergeArgs {
     /// Further meshes in the same frame as CITY, such as ground; may be given several times
     #[arg(long, value_name = "FILE")]
     pub terrain: Vec<PathBuf>,
-    /// Coarse place of a part in the city, JSON (see `align --help`); once for every part, in their order
+    /// Coarse place of a part in the city, JSON (see `align --help`), or its alignment.json; once for every part, in their order
     #[arg(long, value_name = "FILE")]
     pub start: Vec<PathBuf>,
     /// Axis that is up in OBJ files

@@ -5,12 +5,16 @@ pub mod colmap;
 pub mod file;
 mod escape;
 pub mod gltf;
+mod kind;
 pub mod obj;
 mod placement;
 pub mod ply;
 mod start;
+mod text;
 
-pub use alignment::{StoredAlignment, read_alignment};
+pub use alignment::{Spread, StoredAlignment, read_alignment};
 pub use escape::escaped;
+pub use kind::JsonKind;
 pub use placement::PlacementError;
 pub use start::read_start;
+pub use text::{read_text, text_from};

@@ -4,11 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::file::read_regular;
+use super::kind::JsonKind;
+use super::text::read_text;
 use crate::geometry::{Matrix3, NotASimilarity, Similarity, StartError, Vector3};
-
-/// The longest report of a large city has some megabytes; a file beyond this is another file given by mistake.
-const LARGEST_FILE_BYTES: u64 = 64 << 20;
 
 /// Why a file does not say where a reconstruction stands. `what` is "start" or "alignment".
 #[derive(Debug, thiserror::Error)]
@@ -26,12 +24,15 @@ pub enum PlacementError {
     NotASimilarity { what: &'static str, path: PathBuf, source: NotASimilarity },
     #[error("not a valid start: {source}: {}", path.display())]
     Start { path: PathBuf, source: StartError },
+    #[error("this is {}, expected {expected}; {remedy}: {}", kind.words(), path.display())]
+    OtherKind { path: PathBuf, kind: JsonKind, expected: &'static str, remedy: &'static str },
     #[error(
-        "the alignment has neither a transform nor a best_candidate, so nothing can be placed; write a transform \
-         into it or align again: {}",
+        "the alignment{} has neither a transform nor a best_candidate, so it places nothing; write a transform into it, or \
+         align again from a start: {}",
+        in_brackets(verdict),
         path.display()
     )]
-    Empty { path: PathBuf },
+    Empty { path: PathBuf, verdict: String },
 }
 
 /// The three parts under their names, the rotation row by row.
@@ -51,13 +52,21 @@ impl SimilarityRecord {
     }
 }
 
-/// Reads a JSON file of a known form.
-pub(super) fn read_json<T: serde::de::DeserializeOwned>(
+/// The text of a file whose faults are told as those of a `what`.
+pub(super) fn read_named(path: &Path, what: &'static str) -> Result<String, PlacementError> {
+    read_text(path).map_err(|source| PlacementError::Io { what, path: path.into(), source })
+}
+
+/// Takes a text as JSON of a known form.
+pub(super) fn parse_json<T: serde::de::DeserializeOwned>(
+    text: &str,
     path: &Path,
     what: &'static str,
     expected: &'static str,
 ) -> Result<T, PlacementError> {
-    let io = |source| PlacementError::Io { what, path: path.into(), source };
-    let text = read_regular(path, LARGEST_FILE_BYTES).map_err(io)?;
-    serde_json::from_slice(&text).map_err(|source| PlacementError::Json { what, expected, path: path.into(), source })
+    serde_json::from_str(text).map_err(|source| PlacementError::Json { what, expected, path: path.into(), source })
+}
+
+fn in_brackets(word: &str) -> String {
+    if word.is_empty() { String::new() } else { format!(" ({word})") }
 }

@@ -1,11 +1,17 @@
-//! The start file: a coarse similarity in JSON, and how far it may be off.
+//! The start: a coarse similarity in JSON, and how far it may be off. The report of an earlier alignment is one, too.
 
 use std::path::Path;
 
 use serde::Deserialize;
 
-use super::placement::{PlacementError, SimilarityRecord, read_json};
-use crate::geometry::{Start, StartSigmas};
+use super::alignment::{Spread, StoredAlignment, parse_alignment};
+use super::kind::JsonKind;
+use super::placement::{PlacementError, SimilarityRecord, parse_json, read_named};
+use crate::geometry::{Start, StartError, StartSigmas};
+
+/// An earlier alignment is believed to this at most, metres at the scene's radius: what the verdict calls determined. Its
+/// sigmas say how far noise may have moved it, and here better data shall be able to say something else.
+const SMALLEST_SPREAD_M: f64 = 0.35;
 
 const EXPECTED: &str = "{\"scale\": s, \"rotation\": [[..],[..],[..]], \"translation\": [x, y, z]} and, where wanted, \
                         position_sigma, height_sigma, rotation_sigma_deg, tilt_sigma_deg, scale_sigma";
@@ -24,9 +30,25 @@ struct StartRecord {
     scale_sigma: Option<f64>,
 }
 
-/// Reads a start; sigmas that it does not name have their defaults.
+/// Reads a start, or takes an alignment's transform (or best candidate) for one; sigmas that the file does not name have
+/// their defaults.
 pub fn read_start(path: &Path) -> Result<Start, PlacementError> {
-    let record: StartRecord = read_json(path, "start", EXPECTED)?;
+    let text = read_named(path, "start")?;
+    match JsonKind::of(&text) {
+        None | Some(JsonKind::Start) => parse_start(&text, path),
+        Some(JsonKind::Alignment) => start_from(&parse_alignment(&text, path)?).map_err(at(path)),
+        Some(kind) => {
+            let remedy = match kind {
+                JsonKind::Merge => "write the transform of one part into a start",
+                _ => "`cityweld align --help` shows a start",
+            };
+            Err(PlacementError::OtherKind { path: path.into(), kind, expected: EXPECTED, remedy })
+        }
+    }
+}
+
+fn parse_start(text: &str, path: &Path) -> Result<Start, PlacementError> {
+    let record: StartRecord = parse_json(text, path, "start", EXPECTED)?;
     let similarity =
         SimilarityRecord { scale: record.scale, rotation: record.rotation, translation: record.translation };
     let default = StartSigmas::default();
@@ -38,7 +60,28 @@ pub fn read_start(path: &Path) -> Result<Start, PlacementError> {
         tilt_rad: record.tilt_sigma_deg.map_or(default.tilt_rad, |v| v * degree),
         log_scale: record.scale_sigma.unwrap_or(default.log_scale),
     };
-    Start::new(similarity.check("start", path)?, sigmas).map_err(|source| PlacementError::Start { path: path.into(), source })
+    Start::new(similarity.check("start", path)?, sigmas).map_err(at(path))
+}
+
+/// With the sigmas of the alignment, which are about the scene's centre and so nearly about the reconstruction's. Those of
+/// an ambiguous one say nothing of the other poses.
+fn start_from(stored: &StoredAlignment) -> Result<Start, StartError> {
+    let Some(Spread { radius_m, sigmas }) = stored.spread.filter(|_| stored.verdict != "ambiguous") else {
+        return Ok(Start::with_default_sigmas(stored.city_from_sfm));
+    };
+    let smallest_angle = SMALLEST_SPREAD_M / radius_m;
+    let sigmas = StartSigmas {
+        position_m: sigmas.position_m.max(SMALLEST_SPREAD_M),
+        height_m: sigmas.height_m.max(SMALLEST_SPREAD_M),
+        heading_rad: sigmas.heading_rad.max(smallest_angle),
+        tilt_rad: sigmas.tilt_rad.max(smallest_angle),
+        log_scale: sigmas.log_scale.max(smallest_angle),
+    };
+    Start::new(stored.city_from_sfm, sigmas)
+}
+
+fn at(path: &Path) -> impl Fn(StartError) -> PlacementError {
+    |source| PlacementError::Start { path: path.into(), source }
 }
 
 #[cfg(test)]
@@ -76,6 +119,57 @@ mod tests {
         assert_eq!(start.sigmas().heading_rad, std::f64::consts::PI);
         assert!((start.sigmas().tilt_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         assert_eq!(start.sigmas().log_scale, 1e-4);
+    }
+
+    const MOVED: &str = r#"{"scale": 2, "rotation": [[0,-1,0],[1,0,0],[0,0,1]], "translation": [1, 2, 3]}"#;
+
+    #[test]
+    fn takes_an_alignment_for_a_start_whatever_its_verdict() {
+        for (verdict, key) in [("aligned", "transform"), ("undetermined", "best_candidate")] {
+            let text = format!(
+                r#"{{"schema": "cityweld.alignment/1", "verdict": "{verdict}", "{key}": {MOVED}, "warnings": []}}"#
+            );
+            assert_eq!(read(&text), read(MOVED), "{verdict}");
+        }
+        let failed =
+            r#"{"schema": "cityweld.alignment/1", "verdict": "failed", "transform": null, "best_candidate": null}"#;
+        assert!(read(failed).unwrap_err().contains("the alignment (failed) has neither"));
+    }
+
+    #[test]
+    fn takes_the_sigmas_of_an_alignment_and_believes_none_to_the_last_millimetre() {
+        let alignment = |verdict: &str| {
+            // 4 m along x, everything else to a millimetre or a thousandth.
+            let row = |i: usize| {
+                let sigma_sq = if i == 3 { 16.0 } else { 1e-6 };
+                let cells: Vec<_> = (0..7).map(|j| if i == j { sigma_sq } else { 0.0 }.to_string()).collect();
+                format!("[{}]", cells.join(","))
+            };
+            let covariance = (0..7).map(row).collect::<Vec<_>>().join(",");
+            read(&format!(
+                r#"{{"schema": "cityweld.alignment/1", "verdict": "{verdict}", "best_candidate": {MOVED}, "center": [0,0,0],
+                     "radius": 70, "covariance": [{covariance}]}}"#
+            ))
+            .unwrap()
+        };
+        let start = alignment("undetermined");
+        let sigmas = start.sigmas();
+        assert!((sigmas.position_m - 4.0).abs() < 1e-12, "{sigmas:?}");
+        assert_eq!((sigmas.height_m, sigmas.heading_rad), (0.35, 0.35 / 70.0));
+        assert_eq!((sigmas.tilt_rad, sigmas.log_scale), (0.35 / 70.0, 0.35 / 70.0));
+        assert_eq!(alignment("ambiguous"), Start::with_default_sigmas(*start.city_from_sfm()));
+    }
+
+    #[test]
+    fn names_other_json_files_of_the_project_for_what_they_are() {
+        for (text, says) in [
+            (r#"{"schema": "cityweld.merge/1", "parts": []}"#, "the report of a merge"),
+            (r#"{"schema": "cityweld.planes/1", "planes": []}"#, "the planes of a city"),
+            (r#"{"kind": "rigid", "points": [], "planes": [], "pairs": []}"#, "a problem of"),
+        ] {
+            let message = read(text).unwrap_err();
+            assert!(message.contains(says) && message.contains("expected {\"scale\": s"), "{message}");
+        }
     }
 
     #[test]

@@ -274,27 +274,6 @@ fn refuses_numbers_that_make_no_sense() {
 }
 
 #[test]
-fn replaces_only_when_told_to() {
-    let room = room();
-    std::fs::create_dir(room.path().join("out")).unwrap();
-    std::fs::write(room.path().join("out/old"), "").unwrap();
-    let labels = sample("labels");
-    let output = cityweld(&room, &Align::with(&["--labels", &labels, "--force"]).args());
-    assert!(matches!(output.status.code(), Some(0 | 1)), "{}", stderr(&output));
-    assert_eq!(names(&room.path().join("out")), ["alignment.json", "points.ply", "scene.glb", "sfm"]);
-    assert_eq!(names(room.path()), ["out"]);
-}
-
-#[test]
-fn a_failure_after_the_work_began_keeps_what_stood_there() {
-    let room = room();
-    std::fs::create_dir(room.path().join("out")).unwrap();
-    std::fs::write(room.path().join("out/old"), "").unwrap();
-    Align { sfm: data("no_points.ply"), ..Align::with(&["--force"]) }.refused(&room, &["no_points.ply"]);
-    assert_eq!(names(&room.path().join("out")), ["old"]);
-}
-
-#[test]
 fn planes_are_counted_and_written() {
     let room = room();
     let city = sample("city.obj");

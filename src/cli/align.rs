@@ -30,7 +30,7 @@ pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<
 
     voice.bar.show("writing", 0, 0);
     let summary = inputs.summary(plan);
-    let files = write_alignment(&output.path(), &alignment, &summary, &inputs.city.model, &inputs.sfm)?;
+    let files = write_alignment(output.path(), &alignment, &summary, &inputs.city.model, &inputs.sfm)?;
     output.commit()?;
     voice.detail(&format!("{} written", plan.output.display()));
 

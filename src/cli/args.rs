@@ -60,7 +60,7 @@ pub struct Common {
     /// Say on standard error what goes in and how long each step takes
     #[arg(short, long, global = true, help_heading = "Common options")]
     pub verbose: bool,
-    /// Replace OUT if it exists
+    /// Replace OUT if an earlier run made it and nothing else was put there
     #[arg(long, global = true, help_heading = "Common options")]
     pub force: bool,
     /// The summary on standard output as JSON

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use cityweld::export::OutputKind;
+use cityweld::export::{OutputKind, UnpackedFile};
 
 use super::align::carry_out;
 use super::args::{AlignArgs, CityUpArg, DemoArgs, UpArg};
@@ -13,17 +13,15 @@ use super::{Outcome, Session};
 /// Where the sample lies in the output: whoever wants to go on finds the form of every input there.
 const SAMPLE_FOLDER: &str = "sample";
 
-/// A file of the sample: its path in the folder, and its content.
-type SampleFile = (&'static str, &'static [u8]);
-
 macro_rules! sample {
     ($($path:literal),* $(,)?) => {
-        &[$(($path, include_bytes!(concat!("../../assets/sample/", $path)))),*]
+        &[$((concat!("sample/", $path), include_bytes!(concat!("../../assets/sample/", $path)))),*]
     };
 }
 
-/// A part of Delfshaven in Rotterdam, its reconstruction from 24 photographs, their superpixels, and a coarse start.
-const SAMPLE: &[SampleFile] = sample![
+/// By their paths in the output: a part of Delfshaven in Rotterdam, its reconstruction from 24 photographs, their
+/// superpixels, and a coarse start.
+pub const SAMPLE: &[UnpackedFile] = sample![
     "LICENSE.txt",
     "city.obj",
     "start.json",
@@ -65,8 +63,8 @@ const SAMPLE: &[SampleFile] = sample![
 pub fn run(args: &DemoArgs, session: &Session) -> Result<Outcome> {
     keeps_inputs(&args.output, &[])?;
     let output = session.begin(&args.output, OutputKind::Folder)?;
+    unpack(output.path())?;
     let sample = output.path().join(SAMPLE_FOLDER);
-    unpack(&sample)?;
     let plan = AlignPlan { output: args.output.clone(), ..AlignPlan::new(&align_args(&sample), session.common.seed)? };
     let outcome = carry_out(&plan, output, session)?;
     if !session.common.json {
@@ -75,9 +73,9 @@ pub fn run(args: &DemoArgs, session: &Session) -> Result<Outcome> {
     Ok(outcome)
 }
 
-fn unpack(folder: &Path) -> Result<()> {
+fn unpack(output: &Path) -> Result<()> {
     for (path, content) in SAMPLE {
-        let path = folder.join(path);
+        let path = output.join(path);
         let written =
             path.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::write(&path, content));
         written.with_context(|| format!("cannot unpack the sample: {}", path.display()))?;
@@ -132,6 +130,7 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
         let mut found = BTreeSet::new();
         files(&root, &mut found, &root);
-        assert_eq!(found, SAMPLE.iter().map(|(path, _)| (*path).to_owned()).collect());
+        let inner = |path: &str| path.strip_prefix(SAMPLE_FOLDER).unwrap().trim_start_matches('/').to_owned();
+        assert_eq!(found, SAMPLE.iter().map(|(path, _)| inner(path)).collect());
     }
 }

@@ -31,7 +31,7 @@ pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     );
     voice.bar.show("writing", 0, 0);
     let written =
-        write_placed(&output.path(), &title(&stored), &city, &sfm, &stored.city_from_sfm, formats(&args.format))?;
+        write_placed(output.path(), &title(&stored), &city, &sfm, &stored.city_from_sfm, formats(&args.format))?;
     output.commit()?;
 
     let warnings = city.warnings.iter().map(ToString::to_string).chain(sfm.warnings.iter().map(ToString::to_string));

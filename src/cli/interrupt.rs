@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cityweld::export::{Discard, Output, OutputError, OutputKind};
+use cityweld::export::{Discard, Output, OutputError, OutputKind, Replace};
 
 /// 128 + SIGINT, as shells have it.
 const EXIT_INTERRUPTED: i32 = 130;
@@ -34,7 +34,7 @@ impl Interrupt {
 
     /// Begins output that is removed if an interruption comes before it is whole. The list is held meanwhile, so that
     /// an interruption finds the folder in it or comes before there is one.
-    pub fn begin(&self, target: &Path, kind: OutputKind, replace: bool) -> Result<Output, OutputError> {
+    pub fn begin(&self, target: &Path, kind: OutputKind, replace: Replace) -> Result<Output, OutputError> {
         let mut under_way = self.under_way.lock().unwrap_or_else(PoisonError::into_inner);
         let output = Output::begin(target, kind, replace)?;
         under_way.push(output.discard());

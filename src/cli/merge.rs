@@ -35,7 +35,7 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
     voice.detail(&format!("{}: {}", merged.verdict.word(), merged.reason));
 
     voice.bar.show("writing", 0, 0);
-    let files = write_merge(&output.path(), &merged, city.as_ref().map(|city| &city.model))?;
+    let files = write_merge(output.path(), &merged, city.as_ref().map(|city| &city.model))?;
     output.commit()?;
     voice.warnings(&merged.warnings);
     tell(&merged, args, &files, session)?;

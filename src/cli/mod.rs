@@ -17,7 +17,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use cityweld::export::{Output, OutputError, OutputKind};
+use cityweld::export::{Output, OutputError, OutputKind, Replace};
 
 pub use args::Args;
 use args::Command;
@@ -51,7 +51,8 @@ struct Session {
 impl Session {
     /// Begins the output of a command; `--force` and interruptions are seen to.
     fn begin(&self, target: &Path, kind: OutputKind) -> Result<Output, OutputError> {
-        self.interrupt.begin(target, kind, self.common.force)
+        let replace = if self.common.force { Replace::EarlierRun(demo::SAMPLE) } else { Replace::Nothing };
+        self.interrupt.begin(target, kind, replace)
     }
 }
 

@@ -32,7 +32,7 @@ pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
     let names = files.names();
     if let Some((output, form)) = output {
         match form {
-            Form::Glb => write_planes_glb(&output.path(), &city, &planes)?,
+            Form::Glb => write_planes_glb(output.path(), &city, &planes)?,
             Form::Json => std::fs::write(output.path(), planes_report(&city, &planes, &names)?)
                 .with_context(|| format!("cannot write the planes: {}", output.path().display()))?,
         }

@@ -2,6 +2,7 @@
 //! coordinates is undone here.
 
 pub mod colmap;
+mod earlier;
 mod file;
 mod folder;
 mod glb;
@@ -11,10 +12,12 @@ mod output;
 mod planes;
 pub mod ply;
 mod report;
+mod work;
 
+pub use earlier::UnpackedFile;
 pub use file::ExportError;
 pub use folder::{Formats, write_alignment, write_placed};
 pub use merge_report::{merge_report, write_merge};
-pub use output::{Discard, Output, OutputError, OutputKind};
+pub use output::{Discard, Output, OutputError, OutputKind, Replace};
 pub use planes::{Lie, planes_report, write_planes_glb};
 pub use report::{CityCounts, InputSummary, ReportError, SfmCounts, alignment_report};

@@ -8,6 +8,9 @@ use super::colmap::first_point_not_finite;
 use super::file::write_file;
 use crate::reconstruction::Reconstruction;
 
+/// In the header, so that the file can be told from somebody else's.
+pub(super) const REMARK: &str = "comment written by cityweld ";
+
 /// Writes the points, in the frame in which they stand: binary little-endian, `double` coordinates, normals (`double`)
 /// and colours (`uchar`) where there are any.
 pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), ExportError> {
@@ -18,7 +21,8 @@ pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), Exp
     let count = r.points.len();
     let (has_normals, has_colors) = (r.normals.len() == count, r.colors.len() == count);
     write_file(path, |out| {
-        write!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {count}\n")?;
+        let remark = concat!(env!("CARGO_PKG_VERSION"), "\n");
+        write!(out, "ply\nformat binary_little_endian 1.0\n{REMARK}{remark}element vertex {count}\n")?;
         declare(out, "double", &["x", "y", "z"])?;
         if has_normals {
             declare(out, "double", &["nx", "ny", "nz"])?;

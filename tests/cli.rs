@@ -359,6 +359,27 @@ fn an_alignment_is_a_start() {
 }
 
 #[test]
+fn json_is_read_as_windows_saves_it() {
+    let room = room();
+    let problem = r#"{"kind": "rigid", "points": [], "planes": [], "pairs": []}"#;
+    let plain =
+        std::fs::write(room.path().join("plain.json"), problem).map(|()| cityweld(&room, &["solve", "plain.json"]));
+    let plain = stdout(&plain.unwrap());
+    assert!(plain.contains("refused"), "{plain}");
+    let little: Vec<u8> = format!("\u{feff}{problem}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for bytes in [format!("\u{feff}{problem}").into_bytes(), little] {
+        std::fs::write(room.path().join("problem.json"), bytes).unwrap();
+        assert_eq!(stdout(&cityweld(&room, &["solve", "problem.json"])), plain);
+    }
+    let start = std::fs::read_to_string(sample("start.json")).unwrap();
+    let marked: Vec<u8> = format!("\u{feff}{start}").encode_utf16().flat_map(u16::to_be_bytes).collect();
+    std::fs::write(room.path().join("start.json"), marked).unwrap();
+    let align = Align { start: Some("start.json".into()), sfm: data("no_points.ply"), ..Align::sample() };
+    // The start is read before the reconstruction, so it is this one that is at fault.
+    align.refused(&room, &["no_points.ply"]);
+}
+
+#[test]
 fn a_closed_standard_output_is_no_panic() {
     let room = room();
     let city = sample("city.obj");

@@ -107,3 +107,44 @@ fn what_a_killed_run_leaves_is_gone_after_the_next() {
     assert_status(&export(&room, "out", &[]), 0);
     assert_eq!(names(room.path()), ["out", "placed.json"]);
 }
+
+/// `/dev/full` takes no byte, as a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_cannot_be_written_is_told() {
+    let room = tempfile::tempdir().unwrap();
+    let problem = r#"{"kind": "rigid", "points": [], "planes": [], "pairs": []}"#;
+    std::fs::write(room.path().join("problem.json"), problem).unwrap();
+    let (city, sfm) = (sample("city.obj"), sample("sfm"));
+    for (args, written) in [
+        (&["--help"][..], false),
+        (&["align", "--help"], false),
+        (&["--version"], false),
+        (&["solve", "problem.json"], false),
+        (&["planes", &city], false),
+        (&["planes", &city, "--json"], false),
+        (&["planes", &city, "-o", "planes.json", "--quiet"], true),
+        (&["merge", &sfm, &sfm, "-o", "merged", "--quiet"], true),
+        (&["demo", "-o", "out", "--json"], true),
+    ] {
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = command(&room, args).stdout(full).stderr(Stdio::piped()).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        let message = stderr(&output);
+        assert!(message.contains("error: ") && message.contains("standard output"), "{args:?}: {message}");
+        assert_eq!(message.contains("is written"), written, "{args:?}: {message}");
+    }
+    assert_eq!(names(room.path()), ["merged", "out", "planes.json", "problem.json"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn output_that_does_not_fit_is_an_error_and_leaves_nothing() {
+    let room = tempfile::tempdir().unwrap();
+    let program = assert_cmd::cargo::cargo_bin!("cityweld").to_string_lossy().into_owned();
+    let script = format!("ulimit -f 64; exec '{program}' demo -o out");
+    let output = Command::new("sh").args(["-c", &script]).current_dir(room.path()).output().unwrap();
+    assert_status(&output, 2);
+    assert!(stderr(&output).starts_with("error: cannot "), "{}", stderr(&output));
+    assert_eq!(names(room.path()), Vec::<String>::new());
+}

@@ -36,9 +36,10 @@ pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<
 
     voice.warnings(&alignment.warnings);
     if session.common.json {
-        voice.result(&alignment_report(&alignment, &summary)?);
+        voice.result(&alignment_report(&alignment, &summary)?, Some(&plan.output))?;
     } else {
-        voice.result(&summary::of_alignment(&alignment, &plan.output, &files, voice.seconds()));
+        let table = summary::of_alignment(&alignment, &plan.output, &files, voice.seconds());
+        voice.result(&table, Some(&plan.output))?;
     }
     Ok(if alignment.verdict == Verdict::Aligned { Outcome::Good } else { Outcome::Doubtful })
 }

@@ -19,7 +19,7 @@ use clap::{Parser, Subcommand, ValueEnum};
         cityweld demo\n  \
         cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
         cityweld planes city.glb -o planes.glb\n\n\
-        Exit status: 0 aligned; 1 any other verdict; 2 bad input or use, nothing written; 130 interrupted, nothing left behind."
+        Exit status: 0 aligned; 1 any other verdict; 2 bad input or use, or output that cannot be written; 130 interrupted, nothing left behind."
 )]
 pub struct Args {
     #[command(subcommand)]

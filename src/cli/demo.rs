@@ -68,7 +68,7 @@ pub fn run(args: &DemoArgs, session: &Session) -> Result<Outcome> {
     let plan = AlignPlan { output: args.output.clone(), ..AlignPlan::new(&align_args(&sample), session.common.seed)? };
     let outcome = carry_out(&plan, output, session)?;
     if !session.common.json {
-        session.voice.result(&what_next(&args.output));
+        session.voice.result(&what_next(&args.output), Some(&args.output))?;
     }
     Ok(outcome)
 }

@@ -11,8 +11,8 @@ use super::plan::{CityFiles, existing_sfm, keeps_inputs};
 use super::{Outcome, Session, summary};
 
 pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
-    let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
     existing_sfm(&args.sfm, &args.city)?;
+    let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
     let mut inputs = vec![&args.city, &args.sfm, &args.alignment];
     inputs.extend(&args.terrain);
     keeps_inputs(&args.output, &inputs)?;
@@ -38,9 +38,10 @@ pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     voice.warnings(&warnings.collect::<Vec<_>>());
     if session.common.json {
         let answer = serde_json::json!({ "output": args.output.to_string_lossy(), "files": written });
-        voice.result(&format!("{answer:#}\n"));
+        voice.result(&format!("{answer:#}\n"), Some(&args.output))?;
     } else {
-        voice.result(&summary::of_export(&title(&stored), &args.output, &written, voice.seconds()));
+        let table = summary::of_export(&title(&stored), &args.output, &written, voice.seconds());
+        voice.result(&table, Some(&args.output))?;
     }
     Ok(Outcome::Good)
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
+use cityweld::AlignOptions;
 use cityweld::city::read_city;
 use cityweld::export::{OutputKind, merge_report, write_merge};
 use cityweld::format::read_start;
@@ -12,9 +13,8 @@ use cityweld::imagery::{
     lift_superpixels_of,
 };
 use cityweld::merging::{Anchor, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
-use cityweld::reconstruction::{Image, read_reconstruction};
-use cityweld::AlignOptions;
 use cityweld::planes::PreparedCity;
+use cityweld::reconstruction::{Image, read_reconstruction};
 
 use super::args::{EvidenceArg, MergeArgs};
 use super::plan::{CityFiles, keeps_inputs};
@@ -45,11 +45,10 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
 fn tell(merged: &Merge, args: &MergeArgs, files: &[&str], session: &Session) -> Result<()> {
     let voice = &session.voice;
     if session.common.json {
-        voice.result(&merge_report(merged)?);
+        voice.result(&merge_report(merged)?, Some(&args.output))
     } else {
-        voice.result(&summary::of_merge(merged, &args.output, files, voice.seconds()));
+        voice.result(&summary::of_merge(merged, &args.output, files, voice.seconds()), Some(&args.output))
     }
-    Ok(())
 }
 
 fn check(args: &MergeArgs) -> Result<()> {

@@ -13,18 +13,19 @@ mod progress;
 mod solve;
 mod summary;
 
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
 use cityweld::export::{Output, OutputError, OutputKind, Replace};
+use clap::Parser;
 
-pub use args::Args;
-use args::Command;
+use args::{Args, Command};
 use interrupt::Interrupt;
 use print::Voice;
 
-/// Bad input or use; nothing was written.
+/// Bad input or use, or a place that cannot be written.
 const EXIT_BAD_INPUT: u8 = 2;
 
 /// All work is done by threads of the pool; they have as much room as a main thread usually has.
@@ -56,8 +57,27 @@ impl Session {
     }
 }
 
-/// Carries out a command line.
-pub fn run(args: Args) -> ExitCode {
+/// Parses the command line and carries it out.
+pub fn run() -> ExitCode {
+    match Args::try_parse() {
+        Ok(args) => carry_out(args),
+        Err(message) => print(message),
+    }
+}
+
+/// Prints help, the version, or what is wrong with the command line.
+fn print(message: clap::Error) -> ExitCode {
+    let printed = message.print().and_then(|()| std::io::stdout().flush());
+    match print::heard(printed) {
+        Ok(()) => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(EXIT_BAD_INPUT)),
+        Err(error) => {
+            let _ = writeln!(std::io::stderr(), "error: cannot write to standard output: {error}");
+            ExitCode::from(EXIT_BAD_INPUT)
+        }
+    }
+}
+
+fn carry_out(args: Args) -> ExitCode {
     let interrupt = Interrupt::listen();
     let session = Session { voice: Voice::new(&args.common), interrupt: interrupt.clone(), common: args.common };
     let outcome = in_pool(&session, || dispatch(&args.command, &session));
@@ -78,11 +98,7 @@ fn dispatch(command: &Command, session: &Session) -> anyhow::Result<Outcome> {
         Command::Align(args) => align::run(args, session),
         Command::Merge(args) => merge::run(args, session),
         Command::Planes(args) => planes::run(args, session),
-        Command::Solve(args) => Ok(match solve::run(&args.problem) {
-            0 => Outcome::Good,
-            1 => Outcome::Doubtful,
-            _ => Outcome::Refused,
-        }),
+        Command::Solve(args) => solve::run(args, session),
         Command::Demo(args) => demo::run(args, session),
         Command::Export(args) => export::run(args, session),
     }

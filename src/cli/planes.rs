@@ -30,6 +30,7 @@ pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
     voice.detail(&format!("planes: {}", planes.planes.len()));
 
     let names = files.names();
+    let written = args.output.as_deref();
     if let Some((output, form)) = output {
         match form {
             Form::Glb => write_planes_glb(output.path(), &city, &planes)?,
@@ -41,9 +42,9 @@ pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
     let warnings: Vec<String> = city.warnings.iter().map(ToString::to_string).collect();
     voice.warnings(&warnings);
     if session.common.json {
-        voice.result(&planes_report(&city, &planes, &names)?);
+        voice.result(&planes_report(&city, &planes, &names)?, written)?;
     } else {
-        voice.result(&summary::of_city(&city, &planes, &names, args.output.as_deref(), voice.seconds()));
+        voice.result(&summary::of_city(&city, &planes, &names, written, voice.seconds()), written)?;
     }
     Ok(Outcome::Good)
 }

@@ -1,7 +1,10 @@
-//! What is said on standard output and standard error. A closed pipe is no error.
+//! What is said on standard output and standard error. A reader that has gone away is no error.
 
-use std::io::Write;
+use std::io::{ErrorKind, Result, Write};
+use std::path::Path;
 use std::time::Instant;
+
+use anyhow::Context;
 
 use super::args::Common;
 use super::progress::Bar;
@@ -14,16 +17,34 @@ pub struct Voice {
     begun: Instant,
 }
 
+/// What became of a write to standard output; a reader that needed no more is content.
+pub fn heard(written: Result<()>) -> Result<()> {
+    written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
+}
+
+/// An error and its causes; those that its own message quotes are not told again.
+fn in_one_line(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).fold(String::new(), |told, cause| match told {
+        told if told.is_empty() => cause,
+        told if told.contains(&cause) => told,
+        told => format!("{told}: {cause}"),
+    })
+}
+
 impl Voice {
     pub fn new(common: &Common) -> Voice {
         Voice { bar: Bar::new(common.quiet), quiet: common.quiet, verbose: common.verbose, begun: Instant::now() }
     }
 
-    /// The result, on standard output.
-    pub fn result(&self, text: &str) {
+    /// The result, on standard output. `written` is what stands on the disk whether or not that succeeds.
+    pub fn result(&self, text: &str, written: Option<&Path>) -> anyhow::Result<()> {
         self.bar.clear();
         let mut out = std::io::stdout().lock();
-        let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+        let told = heard(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+        told.with_context(|| match written {
+            Some(path) => format!("{} is written, but not what standard output should tell", path.display()),
+            None => "cannot write to standard output".into(),
+        })
     }
 
     /// What was tolerated, once each.
@@ -44,7 +65,7 @@ impl Voice {
     }
 
     pub fn error(&self, error: &anyhow::Error) {
-        self.line(&format!("error: {error:#}"));
+        self.line(&format!("error: {}", in_one_line(error)));
     }
 
     /// Since the command began.
@@ -55,5 +76,23 @@ impl Voice {
     fn line(&self, text: &str) {
         self.bar.clear();
         let _ = writeln!(std::io::stderr(), "{text}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_tells_each_of_its_causes_once() {
+        #[derive(Debug, thiserror::Error)]
+        #[error("cannot read it: {source}: start.json")]
+        struct Quoting {
+            source: std::io::Error,
+        }
+        let error = anyhow::Error::from(Quoting { source: std::io::Error::other("no such file") });
+        assert_eq!(in_one_line(&error), "cannot read it: no such file: start.json");
+        let error = error.context("part 2 is no reconstruction");
+        assert_eq!(in_one_line(&error), "part 2 is no reconstruction: cannot read it: no such file: start.json");
     }
 }

@@ -177,7 +177,6 @@ fn refuses_starts_that_are_none() {
 fn says_that_a_search_without_a_start_is_not_built_yet() {
     let room = room();
     Align { start: None, ..Align::sample() }.refused(&room, &["--start"]);
-    Align { start: None, ..Align::with(&["--near", "100,200,50"]) }.refused(&room, &["--near", "--start"]);
 }
 
 #[test]
@@ -263,8 +262,6 @@ fn refuses_numbers_that_make_no_sense() {
         ["--scale", "NaN"],
         ["--up", "0,0,0"],
         ["--up", "sideways"],
-        ["--near", "1,2"],
-        ["--near", "1,2,-3"],
         ["--city-up", "x"],
     ] {
         Align::with(&wrong).refused(&room, &[wrong[0]]);
@@ -377,6 +374,23 @@ fn json_is_read_as_windows_saves_it() {
     let align = Align { start: Some("start.json".into()), sfm: data("no_points.ply"), ..Align::sample() };
     // The start is read before the reconstruction, so it is this one that is at fault.
     align.refused(&room, &["no_points.ply"]);
+}
+
+#[test]
+fn an_option_that_does_not_exist_is_unexpected_and_nothing_else_is_proposed() {
+    let room = room();
+    for unknown in ["--near", "--foo"] {
+        let output = cityweld(&room, &[&Align::sample().args()[..], &[unknown, "100,200,50"]].concat());
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(
+            message.contains(&format!("unexpected argument '{unknown}'")) && !message.contains("tip:"),
+            "{message}"
+        );
+    }
+    for command in ["align", "merge"] {
+        assert!(!stdout(&cityweld(&room, &[command, "--help"])).contains("--near"));
+    }
 }
 
 #[test]

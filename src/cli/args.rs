@@ -93,9 +93,6 @@ pub struct AlignArgs {
     /// Coarse place of the reconstruction, JSON (see below), or the alignment.json of an earlier run
     #[arg(long, value_name = "FILE")]
     pub start: Option<PathBuf>,
-    /// Search around a place of the city frame, X,Y[,Z],RADIUS in metres (not built yet: give --start)
-    #[arg(long, value_name = "X,Y[,Z],RADIUS", allow_hyphen_values = true)]
-    pub near: Option<Near>,
     /// Further meshes in the same frame as CITY, such as ground; may be given several times
     #[arg(long, value_name = "FILE")]
     pub terrain: Vec<PathBuf>,
@@ -262,21 +259,6 @@ impl FromStr for UpArg {
     }
 }
 
-/// `--near`, city frame, metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Near;
-
-impl FromStr for Near {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Near, String> {
-        match numbers(text).as_deref() {
-            Some([_, _, radius] | [_, _, _, radius]) if *radius > 0.0 => Ok(Near),
-            _ => Err("expected X,Y,RADIUS or X,Y,Z,RADIUS in metres, with a radius above 0".into()),
-        }
-    }
-}
-
 /// `--scale`, metres per reconstruction unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale(pub f64);
@@ -318,14 +300,10 @@ mod tests {
     }
 
     #[test]
-    fn scale_and_radius_are_positive_and_finite() {
+    fn a_scale_is_positive_and_finite() {
         assert_eq!("2.5".parse(), Ok(Scale(2.5)));
         for wrong in ["0", "-1", "NaN", "inf", "1,2", "x"] {
             assert!(wrong.parse::<Scale>().is_err(), "{wrong}");
-        }
-        assert!("-10,20,50".parse::<Near>().is_ok() && "1,2,3,4".parse::<Near>().is_ok());
-        for wrong in ["1,2", "1,2,0", "1,2,3,-4", "a,b,c"] {
-            assert!(wrong.parse::<Near>().is_err(), "{wrong}");
         }
     }
 }

@@ -90,7 +90,6 @@ fn align_args(sample: &Path) -> AlignArgs {
         // Within the sample, so that it never is a place that exists: the true one is set aside already.
         output: sample.join("out"),
         start: Some(sample.join("start.json")),
-        near: None,
         terrain: Vec::new(),
         labels: Some(sample.join("labels")),
         photos: None,

@@ -20,6 +20,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use cityweld::export::{Output, OutputError, OutputKind, Replace};
 use clap::Parser;
+use clap::error::{ContextKind, ErrorKind};
 
 use args::{Args, Command};
 use interrupt::Interrupt;
@@ -66,7 +67,11 @@ pub fn run() -> ExitCode {
 }
 
 /// Prints help, the version, or what is wrong with the command line.
-fn print(message: clap::Error) -> ExitCode {
+fn print(mut message: clap::Error) -> ExitCode {
+    if message.kind() == ErrorKind::UnknownArgument {
+        // No value here begins with a dash; "to pass it as a value" would lead away.
+        message.remove(ContextKind::Suggested);
+    }
     let printed = message.print().and_then(|()| std::io::stdout().flush());
     match print::heard(printed) {
         Ok(()) => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(EXIT_BAD_INPUT)),

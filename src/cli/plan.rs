@@ -107,9 +107,8 @@ pub fn keeps_inputs(output: &Path, inputs: &[&PathBuf]) -> Result<()> {
 fn align_options(args: &AlignArgs, seed: u64) -> Result<AlignOptions> {
     let Some(start) = &args.start else {
         bail!(
-            "{} searching without a start is not built yet; say with --start FILE where the reconstruction is, \
-             roughly (`cityweld align --help` shows the file; rotation_sigma_deg 180 leaves the heading open)",
-            if args.near.is_some() { "--near alone is not enough:" } else { "no --start is given:" }
+            "no --start is given, and searching without one is not built yet; say with --start FILE where the reconstruction \
+             is, roughly (`cityweld align --help` shows the file; rotation_sigma_deg 180 leaves the heading open)"
         );
     };
     let start = read_start(start)?;

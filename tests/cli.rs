@@ -393,6 +393,30 @@ fn an_option_that_does_not_exist_is_unexpected_and_nothing_else_is_proposed() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_instead_of_waited_for() {
+    let room = room();
+    assert!(std::process::Command::new("mkfifo").arg(room.path().join("pipe")).status().unwrap().success());
+    let (city, sfm, start) = (sample("city.obj"), sample("sfm"), sample("start.json"));
+    for endless in ["pipe", "/dev/zero"] {
+        let says: &[&str] = &["a pipe or a device", endless];
+        Align { city: endless.into(), ..Align::sample() }.refused(&room, says);
+        Align { sfm: endless.into(), ..Align::sample() }.refused(&room, says);
+        Align { start: Some(endless.into()), ..Align::sample() }.refused(&room, says);
+        Align::with(&["--terrain", endless]).refused(&room, says);
+        refused(&room, &["planes", endless], says);
+        refused(&room, &["export", &city, &sfm, "--alignment", endless, "-o", "out"], says);
+        refused(&room, &["merge", &sfm, endless, "-o", "out"], says);
+        refused(
+            &room,
+            &["merge", &sfm, &sfm, "--city", endless, "--start", &start, "--start", &start, "-o", "out"],
+            says,
+        );
+        refused(&room, &["solve", endless], says);
+    }
+}
+
 #[test]
 fn a_closed_standard_output_is_no_panic() {
     let room = room();

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use cityweld::AlignOptions;
 use cityweld::city::read_city;
 use cityweld::export::{OutputKind, merge_report, write_merge};
@@ -17,7 +17,7 @@ use cityweld::planes::PreparedCity;
 use cityweld::reconstruction::{Image, read_reconstruction};
 
 use super::args::{EvidenceArg, MergeArgs};
-use super::plan::{CityFiles, keeps_inputs};
+use super::plan::{CityFiles, existing_reconstruction, keeps_inputs};
 use super::{Outcome, Session, summary};
 
 pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
@@ -53,9 +53,7 @@ fn tell(merged: &Merge, args: &MergeArgs, files: &[&str], session: &Session) -> 
 
 fn check(args: &MergeArgs) -> Result<()> {
     for part in &args.parts {
-        std::fs::metadata(part).with_context(|| {
-            format!("cannot read the part, expected a COLMAP folder or a PLY file: {}", part.display())
-        })?;
+        existing_reconstruction(part, "the part")?;
     }
     let mut inputs: Vec<&PathBuf> = args.parts.iter().collect();
     inputs.extend(args.city.iter().chain(&args.terrain).chain(&args.start).chain(&args.labels).chain(&args.photos));

@@ -30,8 +30,8 @@ pub struct CityFiles {
 
 impl AlignPlan {
     pub fn new(args: &AlignArgs, seed: u64) -> Result<AlignPlan> {
-        let city = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
         existing_sfm(&args.sfm, &args.city)?;
+        let city = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
         let mut warnings = Vec::new();
         let superpixels = superpixel_source(args, &mut warnings)?;
         let mut inputs = vec![&args.city, &args.sfm];
@@ -77,9 +77,18 @@ pub fn file_name(path: &Path) -> String {
 
 pub fn existing_sfm(sfm: &Path, city: &Path) -> Result<()> {
     let place = sfm.display();
-    std::fs::metadata(sfm)
-        .with_context(|| format!("cannot read the reconstruction, expected a COLMAP folder or a PLY file: {place}"))?;
+    existing_reconstruction(sfm, "the reconstruction")?;
     ensure!(!same(sfm, city), "city and reconstruction are the same file: {place}");
+    Ok(())
+}
+
+/// A folder or a file, whatever is in it; a pipe might never end.
+pub fn existing_reconstruction(path: &Path, what: &str) -> Result<()> {
+    let place = path.display();
+    let found = std::fs::metadata(path)
+        .with_context(|| format!("cannot read {what}, expected a COLMAP folder or a PLY file: {place}"))?;
+    let is_one = found.is_dir() || found.is_file();
+    ensure!(is_one, "{what} is a pipe or a device, expected a COLMAP folder or a PLY file: {place}");
     Ok(())
 }
 
@@ -143,6 +152,7 @@ fn existing_file(path: &Path, what: &str) -> Result<()> {
     let place = path.display();
     let found = std::fs::metadata(path).with_context(|| format!("cannot read {what}: {place}"))?;
     ensure!(!found.is_dir(), "{what} is a folder, expected an OBJ, glTF or GLB file: {place}");
+    ensure!(found.is_file(), "{what} is a pipe or a device, expected an OBJ, glTF or GLB file: {place}");
     Ok(())
 }
 

@@ -341,18 +341,42 @@ fn says_what_it_is() {
 }
 
 #[test]
-fn an_alignment_is_a_start() {
+fn an_option_that_does_not_exist_is_unexpected_and_nothing_else_is_proposed() {
     let room = room();
-    let labels = sample("labels");
-    let first = cityweld(&room, &Align::with(&["--labels", &labels]).args());
-    assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
-    let again = Align { start: Some("out/alignment.json".into()), out: "again", ..Align::with(&["--labels", &labels]) };
-    let second = cityweld(&room, &again.args());
-    assert_eq!(second.status.code(), Some(0), "{}{}", stdout(&second), stderr(&second));
-    let merge = r#"{"schema": "cityweld.merge/1", "parts": []}"#;
-    std::fs::write(room.path().join("merge.json"), merge).unwrap();
-    let align = Align { start: Some("merge.json".into()), ..Align::with(&["--force"]) };
-    align.refused(&room, &["the report of a merge", "merge.json"]);
+    for unknown in ["--near", "--foo"] {
+        let output = cityweld(&room, &[&Align::sample().args()[..], &[unknown, "100,200,50"]].concat());
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(
+            message.contains(&format!("unexpected argument '{unknown}'")) && !message.contains("tip:"),
+            "{message}"
+        );
+    }
+    for command in ["align", "merge"] {
+        assert!(!stdout(&cityweld(&room, &[command, "--help"])).contains("--near"));
+    }
+}
+
+#[test]
+fn arguments_in_each_others_place_are_told_with_the_right_line() {
+    let room = room();
+    let (city, sfm, start) = (sample("city.obj"), sample("sfm"), sample("start.json"));
+    let line =
+        format!("CITY and SFM are exchanged (the city comes first); give: cityweld align {city} {sfm} --start {start}");
+    Align { city: sfm.clone(), sfm: city.clone(), ..Align::sample() }.refused(&room, &[&line]);
+    let line = format!("give: cityweld export {city} {sfm} --alignment {start}");
+    refused(&room, &["export", &sfm, &city, "--alignment", &start, "-o", "out"], &[&line]);
+    refused(&room, &["merge", &sfm, &city, "-o", "out"], &["PART is a city model", "--city"]);
+    let line = format!("give: cityweld merge {sfm} {sfm} --city {city} --start {start} --start {start}");
+    let args = ["merge", &sfm, &city, "--city", &sfm, "--start", &start, "--start", &start, "-o", "out"];
+    refused(&room, &args, &[&line]);
+    refused(&room, &["planes", &sfm], &["CITY is a COLMAP model"]);
+    Align { city: start.clone(), ..Align::sample() }.refused(&room, &["CITY is a start", "--start"]);
+    Align { start: Some(sfm.clone()), ..Align::sample() }.refused(&room, &["--start is a COLMAP model"]);
+    let (labels, photos) = (sample("labels"), sample("photos"));
+    let line = format!("--labels {labels} --photos {photos}");
+    Align::with(&["--labels", &photos, "--photos", &labels]).refused(&room, &["exchanged", &line]);
+    refused(&room, &["solve", &start], &["this is a start", "expected a problem"]);
 }
 
 #[test]
@@ -374,23 +398,6 @@ fn json_is_read_as_windows_saves_it() {
     let align = Align { start: Some("start.json".into()), sfm: data("no_points.ply"), ..Align::sample() };
     // The start is read before the reconstruction, so it is this one that is at fault.
     align.refused(&room, &["no_points.ply"]);
-}
-
-#[test]
-fn an_option_that_does_not_exist_is_unexpected_and_nothing_else_is_proposed() {
-    let room = room();
-    for unknown in ["--near", "--foo"] {
-        let output = cityweld(&room, &[&Align::sample().args()[..], &[unknown, "100,200,50"]].concat());
-        let message = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(
-            message.contains(&format!("unexpected argument '{unknown}'")) && !message.contains("tip:"),
-            "{message}"
-        );
-    }
-    for command in ["align", "merge"] {
-        assert!(!stdout(&cityweld(&room, &[command, "--help"])).contains("--near"));
-    }
 }
 
 #[cfg(unix)]
@@ -415,6 +422,21 @@ fn pipes_and_devices_are_refused_instead_of_waited_for() {
         );
         refused(&room, &["solve", endless], says);
     }
+}
+
+#[test]
+fn an_alignment_is_a_start() {
+    let room = room();
+    let labels = sample("labels");
+    let first = cityweld(&room, &Align::with(&["--labels", &labels]).args());
+    assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
+    let again = Align { start: Some("out/alignment.json".into()), out: "again", ..Align::with(&["--labels", &labels]) };
+    let second = cityweld(&room, &again.args());
+    assert_eq!(second.status.code(), Some(0), "{}{}", stdout(&second), stderr(&second));
+    let merge = r#"{"schema": "cityweld.merge/1", "parts": []}"#;
+    std::fs::write(room.path().join("merge.json"), merge).unwrap();
+    let align = Align { start: Some("merge.json".into()), ..Align::with(&["--force"]) };
+    align.refused(&room, &["the report of a merge", "merge.json"]);
 }
 
 #[test]

@@ -8,10 +8,15 @@ use cityweld::reconstruction::read_reconstruction;
 
 use super::args::{ExportArgs, FormatArg};
 use super::plan::{CityFiles, existing_sfm, keeps_inputs};
+use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
 
 pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     existing_sfm(&args.sfm, &args.city)?;
+    let mut given: Vec<Given<'_>> =
+        vec![(Role::City, &args.city), (Role::Sfm, &args.sfm), (Role::Alignment, &args.alignment)];
+    given.extend(args.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
+    roles::check("export", &given)?;
     let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
     let mut inputs = vec![&args.city, &args.sfm, &args.alignment];
     inputs.extend(&args.terrain);

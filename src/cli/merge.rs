@@ -18,6 +18,7 @@ use cityweld::reconstruction::{Image, read_reconstruction};
 
 use super::args::{EvidenceArg, MergeArgs};
 use super::plan::{CityFiles, existing_reconstruction, keeps_inputs};
+use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
 
 pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
@@ -55,6 +56,7 @@ fn check(args: &MergeArgs) -> Result<()> {
     for part in &args.parts {
         existing_reconstruction(part, "the part")?;
     }
+    roles::check("merge", &paths_with_roles(args))?;
     let mut inputs: Vec<&PathBuf> = args.parts.iter().collect();
     inputs.extend(args.city.iter().chain(&args.terrain).chain(&args.start).chain(&args.labels).chain(&args.photos));
     keeps_inputs(&args.output, &inputs)?;
@@ -74,6 +76,16 @@ fn check(args: &MergeArgs) -> Result<()> {
         args.start.len()
     );
     Ok(())
+}
+
+fn paths_with_roles(args: &MergeArgs) -> Vec<Given<'_>> {
+    let mut given: Vec<Given<'_>> = args.parts.iter().map(|path| (Role::Part, path.as_path())).collect();
+    given.extend(args.city.iter().map(|path| (Role::CityOption, path.as_path())));
+    given.extend(args.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
+    given.extend(args.labels.iter().map(|path| (Role::Labels, path.as_path())));
+    given.extend(args.photos.iter().map(|path| (Role::Photos, path.as_path())));
+    given.extend(args.start.iter().map(|path| (Role::Start, path.as_path())));
+    given
 }
 
 fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<PreparedCity>> {

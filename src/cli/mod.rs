@@ -10,6 +10,7 @@ mod plan;
 mod planes;
 mod print;
 mod progress;
+mod roles;
 mod solve;
 mod summary;
 

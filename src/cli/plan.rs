@@ -10,6 +10,7 @@ use cityweld::imagery::SuperpixelSource;
 use cityweld::{AlignOptions, Up};
 
 use super::args::{AlignArgs, CityUpArg, UpArg};
+use super::roles::{self, Given, Role};
 
 /// An alignment ready to be carried out.
 pub struct AlignPlan {
@@ -31,6 +32,12 @@ pub struct CityFiles {
 impl AlignPlan {
     pub fn new(args: &AlignArgs, seed: u64) -> Result<AlignPlan> {
         existing_sfm(&args.sfm, &args.city)?;
+        let mut given: Vec<Given<'_>> = vec![(Role::City, &args.city), (Role::Sfm, &args.sfm)];
+        given.extend(args.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
+        given.extend(args.labels.iter().map(|path| (Role::Labels, path.as_path())));
+        given.extend(args.photos.iter().map(|path| (Role::Photos, path.as_path())));
+        given.extend(args.start.iter().map(|path| (Role::Start, path.as_path())));
+        roles::check("align", &given)?;
         let city = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
         let mut warnings = Vec::new();
         let superpixels = superpixel_source(args, &mut warnings)?;

@@ -9,6 +9,7 @@ use cityweld::planes::city_planes;
 
 use super::args::PlanesArgs;
 use super::plan::{CityFiles, keeps_inputs};
+use super::roles::{self, Role};
 use super::{Outcome, Session, summary};
 
 /// What `-o` asks for, by the ending of its name.
@@ -18,6 +19,8 @@ enum Form {
 }
 
 pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
+    let terrain = args.terrain.iter().map(|path| (Role::Terrain, path.as_path()));
+    roles::check("planes", &std::iter::once((Role::City, args.city.as_path())).chain(terrain).collect::<Vec<_>>())?;
     let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
     let output = args.output.as_deref().map(|path| begin(path, args, session)).transpose()?;
     let voice = &session.voice;

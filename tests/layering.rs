@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// A room, and the rooms it may import. Every room stands below all rooms that it names.
 const ALLOWED: &[(&str, &[&str])] = &[
+    ("limits", &[]),
     ("geometry", &[]),
     ("format", &["geometry"]),
     ("city", &["geometry", "format"]),
@@ -14,13 +15,16 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("solvers", &["geometry"]),
     ("robust", &["geometry", "solvers"]),
     ("planes", &["geometry", "city", "reconstruction", "imagery", "robust"]),
-    ("correspondence", &["geometry", "city", "planes", "solvers", "robust"]),
-    ("verdict", &["geometry", "robust"]),
-    ("merging", &["geometry", "format", "reconstruction", "imagery", "solvers", "robust", "planes", "verdict"]),
+    ("correspondence", &["limits", "geometry", "city", "planes", "solvers", "robust"]),
+    ("verdict", &["limits", "geometry", "robust"]),
+    (
+        "merging",
+        &["limits", "geometry", "format", "reconstruction", "imagery", "solvers", "robust", "planes", "verdict"],
+    ),
     ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict", "merging"]),
     (
         "align",
-        &["geometry", "city", "reconstruction", "imagery", "solvers", "robust", "planes", "correspondence", "verdict"],
+        &["limits", "geometry", "city", "reconstruction", "imagery", "robust", "planes", "correspondence", "verdict"],
     ),
     ("lib", &["align"]),
     // For tests, examples and benchmarks: no room may import it.

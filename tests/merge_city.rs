@@ -35,7 +35,7 @@ fn parts_that_share_no_photograph_meet_in_the_city() {
     let a = blurred(piece(&whole, 0..12, &Similarity::identity()), NOISE, 1);
     let b = blurred(piece(&whole, 12..24, &b_from_whole), NOISE * b_from_whole.scale, 2);
     let [folder_a, folder_b] = [("a", &a), ("b", &b)].map(|(name, part)| write_part(room.path(), name, part));
-    let start = read_start(&of_sample("start.json")).unwrap().city_from_sfm;
+    let start = *read_start(&of_sample("start.json")).unwrap().city_from_sfm();
     let start_b = room.path().join("start_b.json");
     write_start(&start_b, &(start * b_from_whole.inverse()));
 

@@ -41,7 +41,12 @@ pub(super) fn tell(
 }
 
 /// The alignment where there was nothing to search.
-pub(super) fn refused(obstacle: &Obstacle, city: &PreparedCity, patches: &Patches, options: &AlignOptions) -> Alignment {
+pub(super) fn refused(
+    obstacle: &Obstacle,
+    city: &PreparedCity,
+    patches: &Patches,
+    options: &AlignOptions,
+) -> Alignment {
     Alignment {
         verdict: Verdict::Failed,
         reason: obstacle.to_string(),
@@ -80,8 +85,7 @@ fn evidence_of_planes(rows: &[ProbeOnPlane], city: &PreparedCity) -> Vec<PlaneEv
         let object = city.model.object_name(object).to_owned();
         PlaneEvidence { plane: plane.0, object, points: rows.len(), rms_m: rms(&across) }
     };
-    let mut evidence: Vec<PlaneEvidence> =
-        rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(of_plane).collect();
+    let mut evidence: Vec<PlaneEvidence> = rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(of_plane).collect();
     evidence.sort_by(|a, b| b.points.cmp(&a.points).then(a.plane.cmp(&b.plane)));
     evidence
 }

@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use super::facet::Shaper;
 use super::join::join_vertices;
+use super::orientation::turn_outward;
 use super::origin::common_origin;
 use super::source::Source;
 use super::validate::{check_extents, validate};
 use super::warning::{CityDefect, Warnings};
-use super::{CityError, CityModel, CityRole, CitySource, Facet, ObjectId};
+use super::{CityError, CityModel, CitySource, Facet, ObjectId};
 use crate::geometry::Point3;
 
 /// Fixed, so that results do not depend on the number of threads; large enough to be worth a thread's while.
@@ -61,10 +62,12 @@ fn add_source(
     model.objects.extend(source.objects.iter().cloned());
     let objects = first_object..model.objects.len() as u32;
     let place_of = |facet: u32| source.place_of(facet_faces[(facet - facets.start) as usize] as usize);
-    let is_city = source.role == CityRole::City;
-    validate(model, objects.clone(), facets.clone(), is_city, warnings, place_of);
     let (path, role, precision_m) = (source.path.clone(), source.role, source.precision_m);
-    model.sources.push(CitySource { path, role, facets, objects, precision_m });
+    let of_file = CitySource { path, role, facets: facets.clone(), objects, precision_m };
+    // `validate` must see the turned model.
+    turn_outward(model, &of_file, warnings, &place_of);
+    validate(model, &of_file, warnings, &place_of);
+    model.sources.push(of_file);
     Ok(())
 }
 

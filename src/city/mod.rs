@@ -6,6 +6,7 @@
 mod build;
 mod facet;
 mod join;
+mod orientation;
 mod origin;
 mod polygons;
 mod read;

@@ -7,6 +7,7 @@ use super::build::build;
 use super::recognise::{Format, recognise};
 use super::source::Source;
 use super::{CityModel, CityRole};
+use crate::format::escaped;
 use crate::format::file::{LARGEST_MODEL_BYTES, read_regular};
 use crate::format::gltf::{self, GltfError};
 use crate::format::obj::{self, ObjError};
@@ -32,9 +33,9 @@ pub enum CityUp {
 pub enum CityError {
     #[error("cannot read the file: {reason}; expected an OBJ, glTF or GLB file ({})", path.display())]
     Unreadable { path: PathBuf, reason: io::Error },
-    #[error("{error} ({})", obj_place(path, error))]
+    #[error("{} ({})", escaped(&error.to_string()), escaped(&obj_place(path, error)))]
     Obj { path: PathBuf, error: ObjError },
-    #[error("{error} ({})", gltf_place(path, error))]
+    #[error("{} ({})", escaped(&error.to_string()), escaped(&gltf_place(path, error)))]
     Gltf { path: PathBuf, error: Box<GltfError> },
     #[error("{found}, expected an OBJ, glTF or GLB file; {remedy} ({})", path.display())]
     OtherFormat { path: PathBuf, found: &'static str, remedy: &'static str },

@@ -146,10 +146,169 @@ fn polygons_that_cross_themselves_get_a_corner_at_the_crossing() {
     assert_eq!(model.vertices[6] + model.origin, Point3::new(3.0, 3.0, 5.0));
 }
 
+/// Every face of the text the other way round.
+fn inside_out(text: &str) -> String {
+    let turned = |line: &str| match line.strip_prefix("f ") {
+        Some(corners) => format!("f {}\n", corners.split(' ').rev().collect::<Vec<_>>().join(" ")),
+        None => format!("{line}\n"),
+    };
+    text.lines().map(turned).collect()
+}
+
+/// Normals of all facets, to a tenth.
+fn normals(model: &CityModel) -> Vec<[i32; 3]> {
+    model.facets.iter().map(|facet| facet.plane.normal.map(|c| (10.0 * c).round() as i32).into()).collect()
+}
+
+fn inside_out_objects(model: &CityModel) -> u64 {
+    let is_it = |warning: &&CityWarning| matches!(warning.defect, CityDefect::InsideOut { .. });
+    model.warnings.iter().filter(is_it).map(|warning| warning.count).sum()
+}
+
 #[test]
-fn a_facet_turned_round_disagrees_with_its_neighbours() {
+fn a_facet_wound_against_the_rest_is_turned() {
     let model = model(&BOX.replace("f 5 6 7 8", "f 8 7 6 5"));
-    assert_eq!(defects(&model), [(CityDefect::MixedOrientation { edges: 4 }, 1, Some(11))]);
+    assert_eq!(defects(&model), [(CityDefect::WoundAgainstTheRest { facets: 1 }, 1, Some(11))]);
+    assert_eq!(normals(&model), normals(&super::tests::model(BOX)));
+}
+
+#[test]
+fn a_solid_wound_inwards_is_turned() {
+    let model = model(&inside_out(BOX));
+    assert_eq!(defects(&model), [(CityDefect::InsideOut { of: 1 }, 1, Some(10))]);
+    assert_eq!(normals(&model), normals(&super::tests::model(BOX)));
+    assert_eq!(model.facets[0].outline[0], 0, "the first corner stays the first");
+}
+
+#[test]
+fn a_house_wound_inwards_without_ground_or_with_separate_walls_is_turned() {
+    let no_ground = BOX.replace("f 4 3 2 1\n", "");
+    // Every wall with corners of its own, a hair off its neighbours', as from a writer that shares none.
+    let loose = "o loose\nv 0 0 0\nv 2 0 0\nv 2 0 4\nv 0 0 4\nv 2 0.001 0\nv 2 3 0\nv 2 3 4\nv 2 0.001 4\n\
+        v 2 3.001 0\nv 0 3.001 0\nv 0 3.001 4\nv 2 3.001 4\nv 0 3.002 0\nv 0 0.002 0\nv 0 0.002 4\nv 0 3.002 4\n\
+        v 0 0 4.001\nv 2 0 4.001\nv 2 3.001 4.001\nv 0 3.001 4.001\n\
+        f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\nf 13 14 15 16\nf 17 18 19 20\n";
+    for text in [&no_ground, loose] {
+        let (right, turned) = (model(text), model(&inside_out(text)));
+        assert_eq!((inside_out_objects(&right), inside_out_objects(&turned)), (0, 1), "{:?}", right.warnings);
+        assert_eq!(normals(&turned), normals(&right));
+    }
+}
+
+#[test]
+fn roofs_alone_look_up() {
+    let roof = "o roof\nv 0 0 5\nv 9 0 5\nv 9 4 8\nv 0 4 8\nv 9 8 5\nv 0 8 5\nf 1 2 3 4\nf 4 3 5 6\n";
+    assert_eq!(
+        (normals(&model(roof)), normals(&model(&inside_out(roof)))),
+        (vec![[0, -6, 8], [0, 6, 8]], vec![[0, -6, 8], [0, 6, 8]])
+    );
+}
+
+#[test]
+fn a_wall_that_stands_alone_stays_as_it_is() {
+    let wall = "o wall\nv 0 0 0\nv 9 0 0\nv 9 0 3\nv 0 0 3\nf 1 2 3 4\n";
+    for text in [wall.to_owned(), inside_out(wall)] {
+        assert!(matches!(defects(&model(&text))[..], [(CityDefect::OpenShell { .. }, 1, _)]));
+    }
+    assert_ne!(normals(&model(wall)), normals(&model(&inside_out(wall))));
+    // Two walls at a corner that disagree: nothing tells which is right.
+    let corner = format!("{wall}v 9 9 0\nv 9 9 3\nf 2 3 6 5\n");
+    assert!(defects(&model(&corner)).iter().any(|found| found.0 == CityDefect::MixedOrientation { edges: 1 }));
+}
+
+/// The box again, shrunk about its middle or moved, with corners counted from `first`.
+fn further_box(scale: f64, shift: f64, first: usize) -> String {
+    let corner = |at: usize| {
+        let [x, y, z] = [[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0], [0, 0, 4], [2, 0, 4], [2, 3, 4], [0, 3, 4]][at];
+        let about = |value: i32, middle: f64| middle + scale * (f64::from(value) - middle);
+        format!("v {} {} {}\n", 90851.0 + about(x, 1.0) + shift, 435670.0 + about(y, 1.5), about(z, 2.0))
+    };
+    let faces = [[4, 3, 2, 1], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
+    let face = |corners: [usize; 4]| format!("f {}\n", corners.map(|at| (at + first - 1).to_string()).join(" "));
+    (0..8).map(corner).chain(faces.into_iter().map(face)).collect()
+}
+
+#[test]
+fn solids_of_one_object_are_judged_each_and_a_cavity_goes_with_its_solid() {
+    let apart = format!("{BOX}{}", inside_out(&further_box(0.9, 10.0, 9)));
+    let both = model(&apart);
+    assert_eq!(defects(&both)[0].0, CityDefect::WoundAgainstTheRest { facets: 6 });
+    assert_eq!(normals(&both)[..6], normals(&both)[6..]);
+    let cavity = format!("{BOX}{}", inside_out(&further_box(0.5, 0.0, 9)));
+    assert_eq!(model(&cavity).warnings, []);
+    let turned = model(&inside_out(&cavity));
+    assert_eq!(inside_out_objects(&turned), 1);
+    assert_eq!(normals(&turned), normals(&model(&cavity)));
+}
+
+#[test]
+fn a_band_with_one_side_and_edges_of_many_facets_end_well() {
+    let strip = |at: usize| {
+        let (turn, half) = (at as f64 * std::f64::consts::TAU / 12.0, at as f64 * std::f64::consts::PI / 12.0);
+        let rim = |side: f64| {
+            let radius = 5.0 + side * half.cos();
+            format!("v {} {} {}\n", radius * turn.cos(), radius * turn.sin(), side * half.sin())
+        };
+        rim(-1.0) + &rim(1.0)
+    };
+    let vertices: String = (0..12).map(strip).collect();
+    let quads: String =
+        (0..11).map(|at| format!("f {} {} {} {}\n", 2 * at + 1, 2 * at + 3, 2 * at + 4, 2 * at + 2)).collect();
+    model(&format!("o band\n{vertices}{quads}f 23 2 1 24\n"));
+    let fan: String = (0..300).map(|at| format!("v {at} 7 1\nf 1 2 -1\n")).collect();
+    model(&format!("o fan\nv 0 0 0\nv 0 0 9\n{fan}"));
+}
+
+#[test]
+fn terrain_wound_downwards_is_turned_as_a_whole() {
+    // Mostly level, with one step that leans over: it is turned with the rest.
+    let ground = "o field\nv 0 0 0\nv 9 0 0\nv 9 9 0\nv 0 9 0\nf 1 2 3 4\no quay\nv 9 0 0\nv 9 9 0\nv 8.9 9 -2\nv 8.9 0 -2\nf 5 8 7 6\n";
+    let read = |text: &str| sound(build(vec![source(CityRole::City, BOX), source(CityRole::Terrain, text)]).unwrap());
+    let (right, turned) = (read(ground), read(&inside_out(ground)));
+    assert_eq!(normals(&turned), normals(&right));
+    assert!(defects(&turned).contains(&(CityDefect::TerrainLooksDown, 1, Some(6))), "{:?}", turned.warnings);
+    assert!(defects(&right).iter().all(|found| found.0 != CityDefect::TerrainLooksDown));
+}
+
+#[test]
+fn a_city_inside_out_as_a_whole_may_be_a_mirror_image_and_the_warning_says_so() {
+    let exchanged: String = BOX
+        .lines()
+        .map(|line| match line.split(' ').collect::<Vec<_>>()[..] {
+            ["v", x, y, z] => format!("v {y} {x} {z}\n"),
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    let sentence = model(&exchanged).warnings[0].to_string();
+    assert!(
+        sentence.starts_with("1 object is wound inside out (of 1), turned; if the city is a mirror image"),
+        "{sentence}"
+    );
+    let one_of_two = format!("{BOX}o other\n{}", inside_out(&further_box(1.0, 10.0, 9)));
+    let sentence = model(&one_of_two).warnings[0].to_string();
+    assert!(sentence.starts_with("1 object is wound inside out (of 2), turned; first: object other"), "{sentence}");
+}
+
+#[test]
+fn many_walls_behind_each_other_are_judged_in_time() {
+    let walls: String = (0..20_000)
+        .map(|at| {
+            let y = f64::from(at) * 0.01;
+            format!("v 0 {y} 0\nv 9 {y} 0\nv 9 {y} 9\nv 0 {y} 9\nf -4 -3 -2 -1\n")
+        })
+        .collect();
+    assert_eq!(model(&format!("o walls\n{walls}")).facets.len(), 20_000);
+}
+
+#[test]
+fn names_from_files_are_shown_escaped() {
+    let warned = model("o \x1b[31mred\u{9b}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").warnings[0].to_string();
+    assert!(warned.contains("object \\u{1b}[31mred\\u{9b}, "), "{warned}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("city.obj");
+    std::fs::write(&path, "o \x1b[2J\x07\nv 0 0 0\nf 1 2 \x1bx\n").unwrap();
+    let refused = read_city(&path, &[], &CityOptions::default()).unwrap_err().to_string();
+    assert!(refused.contains("object \\u{1b}[2J\\u{7}, ") && !refused.contains('\x1b'), "{refused}");
 }
 
 #[test]

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::warning::{CityDefect, CityPlace, Warnings};
-use super::{CityModel, CitySource, Facet};
+use super::{CityModel, CityRole, CitySource, Facet};
 use crate::geometry::{Point3, Vector3};
 
 /// Objects looked at together by one thread.
-const OBJECTS_PER_CHUNK: usize = 64;
+pub(super) const OBJECTS_PER_CHUNK: usize = 64;
 
 /// Metres; a city that is smaller or larger across is in other units, or has vertices that belong elsewhere.
 const SMALLEST_CITY_M: f64 = 1.0;
@@ -16,8 +16,8 @@ const LARGEST_CITY_M: f64 = 200_000.0;
 /// Metres; a further mesh may begin this far from the city, or as far as the city is large.
 const NEAR_M: f64 = 1000.0;
 
-/// An edge of one facet, from the lower vertex to the higher or back.
-type Edge = (u32, u32, bool, u32);
+/// An edge of one facet, from the lower vertex to the higher or back, and the facet's number within its object.
+pub(super) type Edge = (u32, u32, bool, u32);
 
 /// What the edges of one object tell.
 #[derive(Clone, Copy, Default)]
@@ -31,17 +31,14 @@ struct Shell {
     first_mixed: u32,
 }
 
-/// Judges the objects of one file. `objects` and `facets` are the file's own in the model; `place_of` says where a
-/// facet came from.
+/// Judges the objects of one file; `place_of` says where a facet came from.
 pub(super) fn validate(
     model: &CityModel,
-    objects: std::ops::Range<u32>,
-    facets: std::ops::Range<u32>,
-    is_closed_by_nature: bool,
+    source: &CitySource,
     warnings: &mut Warnings,
     place_of: impl Fn(u32) -> CityPlace,
 ) {
-    let by_object = facets_by_object(model, objects, facets.clone());
+    let by_object = facets_by_object(model, source.objects.clone(), source.facets.clone());
     let judged = by_object.par_chunks(OBJECTS_PER_CHUNK);
     let shells: Vec<Vec<Shell>> =
         judged.map(|chunk| chunk.iter().map(|facets| judge(model, facets)).collect()).collect();
@@ -50,19 +47,24 @@ pub(super) fn validate(
             let defect = CityDefect::MixedOrientation { edges: shell.mixed };
             warnings.add(defect, 1, || place_of(shell.first_mixed));
         }
-        if shell.open > 0 && is_closed_by_nature {
+        // Terrain is open by its nature.
+        if shell.open > 0 && source.role == CityRole::City {
             let defect = CityDefect::OpenShell { open_edges: shell.open, edges: shell.edges };
             warnings.add(defect, 1, || place_of(shell.first_open));
         }
     }
-    for (facet, earlier_is_reversed) in doubled(model, facets) {
+    for (facet, earlier_is_reversed) in doubled(model, source.facets.clone()) {
         let defect = if earlier_is_reversed { CityDefect::DoubledReversed } else { CityDefect::Doubled };
         warnings.add(defect, 1, || place_of(facet));
     }
 }
 
 /// The facets of each object in order; objects without any are left out.
-fn facets_by_object(model: &CityModel, objects: std::ops::Range<u32>, facets: std::ops::Range<u32>) -> Vec<Vec<u32>> {
+pub(super) fn facets_by_object(
+    model: &CityModel,
+    objects: std::ops::Range<u32>,
+    facets: std::ops::Range<u32>,
+) -> Vec<Vec<u32>> {
     let mut by_object = vec![Vec::new(); objects.len()];
     for facet in facets {
         by_object[(model.facets[facet as usize].object.0 - objects.start) as usize].push(facet);
@@ -71,24 +73,30 @@ fn facets_by_object(model: &CityModel, objects: std::ops::Range<u32>, facets: st
     by_object
 }
 
-fn judge(model: &CityModel, facets: &[u32]) -> Shell {
+/// All edges of an object, like ones beside each other.
+pub(super) fn sorted_edges(model: &CityModel, facets: &[u32]) -> Vec<Edge> {
     let mut edges: Vec<Edge> = Vec::with_capacity(4 * facets.len());
-    for &facet in facets {
-        edges.extend(edges_of(&model.facets[facet as usize]).map(|(low, high, rises)| (low, high, rises, facet)));
+    for (&facet, at) in facets.iter().zip(0..) {
+        edges.extend(edges_of(&model.facets[facet as usize]).map(|(low, high, rises)| (low, high, rises, at)));
     }
     edges.par_sort_unstable();
+    edges
+}
+
+fn judge(model: &CityModel, facets: &[u32]) -> Shell {
+    let edges = sorted_edges(model, facets);
     let mut shell = Shell { first_open: u32::MAX, first_mixed: u32::MAX, ..Shell::default() };
     for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         shell.edges += 1;
         match edge {
             [only] => {
                 shell.open += 1;
-                shell.first_open = shell.first_open.min(only.3);
+                shell.first_open = shell.first_open.min(facets[only.3 as usize]);
             }
             // More than two facets at one edge are no shell, and tell nothing about sides.
             [one, other] if one.2 == other.2 => {
                 shell.mixed += 1;
-                shell.first_mixed = shell.first_mixed.min(one.3).min(other.3);
+                shell.first_mixed = shell.first_mixed.min(facets[one.3.min(other.3) as usize]);
             }
             _ => {}
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use cityweld::format::{JsonKind, read_text, text_from};
-use cityweld::solvers::problem::{Refusal, answer_json, solve_json};
+use cityweld::solvers::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
 
 use super::args::SolveArgs;
 use super::{Outcome, Session};
@@ -12,7 +12,11 @@ use super::{Outcome, Session};
 /// Solves the problem in a file (`-`: standard input) and prints the answer, a refusal included.
 pub fn run(args: &SolveArgs, session: &Session) -> Result<Outcome> {
     let path = &args.problem;
-    let read = if path == "-" { text_from(std::io::stdin()) } else { read_text(Path::new(path)) };
+    let read = if path == "-" {
+        text_from(std::io::stdin(), LARGEST_PROBLEM_BYTES)
+    } else {
+        read_text(Path::new(path), LARGEST_PROBLEM_BYTES)
+    };
     let text = read.with_context(|| format!("cannot read the problem: {path}"))?;
     if let Some(kind @ (JsonKind::Start | JsonKind::Alignment | JsonKind::Merge | JsonKind::Planes)) =
         JsonKind::of(&text)

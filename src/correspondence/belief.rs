@@ -119,7 +119,8 @@ impl Belief {
     pub fn completion(&self, missing: usize, random: &mut Random) -> Option<(Vec<Row>, f64)> {
         // The scale counts by what it moves at the scene's radius, so that all four are metres and the unit changes nothing.
         let metres = Vector4::new(self.errors.radius_m, 1.0, 1.0, 1.0);
-        let eigen = SymmetricEigen::new(Matrix4::from_diagonal(&metres) * self.covariance * Matrix4::from_diagonal(&metres));
+        let eigen =
+            SymmetricEigen::new(Matrix4::from_diagonal(&metres) * self.covariance * Matrix4::from_diagonal(&metres));
         let mut order = [0, 1, 2, 3];
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let mut chance = 1.0;

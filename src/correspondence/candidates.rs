@@ -61,7 +61,8 @@ const MOST_VOTERS: usize = 3000;
 /// The distinct poses that hypotheses lead to, best first.
 pub fn candidates(refiner: &Refiner, hypotheses: &Hypotheses) -> Vec<Candidate> {
     let scene = refiner.scene;
-    let unranked = |ranked: &crate::robust::Ranked<Similarity>| Candidate { hits: ranked.hits, ..unjudged(refiner, &ranked.pose) };
+    let unranked =
+        |ranked: &crate::robust::Ranked<Similarity>| Candidate { hits: ranked.hits, ..unjudged(refiner, &ranked.pose) };
     let mut candidates: Vec<Candidate> = hypotheses.ranked.iter().map(unranked).collect();
     for stage in stages(scene) {
         if stage.basins {

@@ -97,8 +97,7 @@ impl Prior {
         let s = &self.sigmas;
         let shift = city_from_level.translation - self.center_in_city.coords;
         let any_heading = self.reach_sigmas * s.heading_rad >= std::f64::consts::PI;
-        let heading =
-            if any_heading { 0.0 } else { heading_of(city_from_level.rotation.matrix()) / s.heading_rad };
+        let heading = if any_heading { 0.0 } else { heading_of(city_from_level.rotation.matrix()) / s.heading_rad };
         [
             heading,
             city_from_level.scale.ln() / s.log_scale,
@@ -148,8 +147,7 @@ impl Prior {
         let (bottom, top) = (cloud.bottom_m.min(0.0) * grow, cloud.top_m.max(0.0) * grow);
         let radius = cloud.radius_m * grow;
         // A scene that leans rises by what it is wide, and is wider by what it is high.
-        let lean =
-            if self.up_is_known { 0.0 } else { self.most_tilt_rad().min(std::f64::consts::FRAC_PI_2).sin() };
+        let lean = if self.up_is_known { 0.0 } else { self.most_tilt_rad().min(std::f64::consts::FRAC_PI_2).sin() };
         let side = radius + lean * top.max(-bottom) + self.reach_sigmas * self.sigmas.position_m + MARGIN_M;
         let rise = lean * radius + self.reach_sigmas * self.sigmas.height_m + MARGIN_M;
         let c = self.center_in_city;
@@ -174,11 +172,7 @@ pub fn heading_of(rotation: &Matrix3<f64>) -> f64 {
 }
 
 /// Where one sigma covers the whole city a larger one says no more, and would only spread the samples.
-fn bounded(
-    sigmas: &StartSigmas,
-    center: &Point3<f64>,
-    city: Option<(Point3<f64>, Point3<f64>)>,
-) -> StartSigmas {
+fn bounded(sigmas: &StartSigmas, center: &Point3<f64>, city: Option<(Point3<f64>, Point3<f64>)>) -> StartSigmas {
     let Some((low, high)) = city else { return *sigmas };
     let farthest = |k: usize| (center[k] - low[k]).abs().max((high[k] - center[k]).abs()) + MARGIN_M;
     StartSigmas {

@@ -92,7 +92,8 @@ impl<'a> Refiner<'a> {
         for _ in 0..SHARPENING_STEPS {
             let pose = refined.city_from_level;
             let rows = self.probes_on_planes(panel, &pose, gate_m);
-            let narrow_m = (limits.tukey_sigmas * robust_sigma(&rows) / pose.scale).clamp(limits.least_gate_share * gate_m, gate_m);
+            let narrow_m = (limits.tukey_sigmas * robust_sigma(&rows) / pose.scale)
+                .clamp(limits.least_gate_share * gate_m, gate_m);
             refined = self.refine(panel, &pose, &[narrow_m]);
         }
         refined

@@ -72,7 +72,12 @@ impl<'a> Sampler<'a> {
         let in_sight = scene.city.planes_in_sight(&scene.reach.low, &scene.reach.high);
         let rising = |take: fn(&LevelPatch) -> bool| -> Vec<f64> {
             let weights = votes.patches.iter().map(|p| if take(p) { p.weight } else { 0.0 });
-            weights.scan(0.0, |sum, weight| { *sum += weight; Some(*sum) }).collect()
+            weights
+                .scan(0.0, |sum, weight| {
+                    *sum += weight;
+                    Some(*sum)
+                })
+                .collect()
         };
         Sampler {
             votes,
@@ -266,7 +271,8 @@ impl<'a> Sampler<'a> {
         for side in sides(p) {
             let normal = belief.turn(&side);
             let level: &[Target] = if has_azimuth(&normal) { &[] } else { &self.targets.level };
-            let turned = self.targets.facing(azimuth(&normal), if level.is_empty() { self.limits.same_angle_rad } else { 0.0 });
+            let turned =
+                self.targets.facing(azimuth(&normal), if level.is_empty() { self.limits.same_angle_rad } else { 0.0 });
             for t in turned.chain(level) {
                 if !self.same_tilt(&normal, t) {
                     continue;

@@ -54,7 +54,14 @@ pub(super) fn walk(
 }
 
 /// The pose after a walk along each loose direction in turn, by the score of `panel` within `gate_m`.
-pub fn slide(scene: &Scene, panel: &[u32], chart: &Chart, spectrum: &Spectrum, pose: &Similarity, gate_m: f64) -> Similarity {
+pub fn slide(
+    scene: &Scene,
+    panel: &[u32],
+    chart: &Chart,
+    spectrum: &Spectrum,
+    pose: &Similarity,
+    gate_m: f64,
+) -> Similarity {
     let limits = &scene.limits.walk;
     let step_m = limits.step_of_gate * gate_m;
     let value = |pose: &Similarity| (scene.score(panel, pose, gate_m), *pose);

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use super::folder::{COLMAP_FOLDER, POINTS_FILE, REPORT_FILE, SCENE_FILE};
 use super::merge_report::MERGE_REPORT_FILE;
 use super::ply::REMARK;
-use crate::format::{JsonKind, read_text};
+use crate::format::{JsonKind, LARGEST_TEXT_BYTES, read_text};
 
 /// A file that a command unpacks beside its results: its path in the output, parts between slashes, and its content.
 pub type UnpackedFile = (&'static str, &'static [u8]);
@@ -99,7 +99,7 @@ fn is_colmap_file(inner: &str) -> bool {
 
 /// The kind that a report names itself; a file without its schema may be anybody's.
 fn json_kind(path: &Path) -> Option<JsonKind> {
-    JsonKind::by_schema(&read_text(path).ok()?)
+    JsonKind::by_schema(&read_text(path, LARGEST_TEXT_BYTES).ok()?)
 }
 
 fn holds(path: &Path, content: &[u8]) -> bool {

@@ -17,4 +17,4 @@ pub use escape::escaped;
 pub use kind::JsonKind;
 pub use placement::PlacementError;
 pub use start::read_start;
-pub use text::{read_text, text_from};
+pub use text::{LARGEST_TEXT_BYTES, read_text, text_from};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::kind::JsonKind;
-use super::text::read_text;
+use super::text::{LARGEST_TEXT_BYTES, read_text};
 use crate::geometry::{Matrix3, NotASimilarity, Similarity, StartError, Vector3};
 
 /// Why a file does not say where a reconstruction stands. `what` is "start" or "alignment".
@@ -54,7 +54,7 @@ impl SimilarityRecord {
 
 /// The text of a file whose faults are told as those of a `what`.
 pub(super) fn read_named(path: &Path, what: &'static str) -> Result<String, PlacementError> {
-    read_text(path).map_err(|source| PlacementError::Io { what, path: path.into(), source })
+    read_text(path, LARGEST_TEXT_BYTES).map_err(|source| PlacementError::Io { what, path: path.into(), source })
 }
 
 /// Takes a text as JSON of a known form.

@@ -1,32 +1,24 @@
 //! Text as editors and shells save it: UTF-8 with a byte order mark or without, or the UTF-16 of a redirected PowerShell.
 
-use std::fs::File;
 use std::io::{self, Error, ErrorKind, Read};
 use std::path::Path;
+
+use super::file::{read_at_most, read_regular};
 
 /// The longest report of a large city has some megabytes; a file beyond this is another file given by mistake.
 pub const LARGEST_TEXT_BYTES: u64 = 64 << 20;
 
-/// The text of a regular file; anything else might never end.
-pub fn read_text(path: &Path) -> io::Result<String> {
-    let found = std::fs::metadata(path)?;
-    if found.is_dir() {
-        return Err(Error::new(ErrorKind::IsADirectory, "this is a folder, expected a file"));
-    }
-    if !found.is_file() {
-        return Err(Error::new(ErrorKind::InvalidInput, "this is a pipe or a device, expected a file"));
-    }
-    text_from(File::open(path)?)
+/// The text of a regular file of at most `limit` bytes.
+pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
+    text_of(read_regular(path, limit)?)
 }
 
-/// The text of a stream, up to the largest that is taken.
-pub fn text_from(stream: impl Read) -> io::Result<String> {
-    let mut bytes = Vec::new();
-    stream.take(LARGEST_TEXT_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > LARGEST_TEXT_BYTES {
-        let message = format!("this has more than {} MiB, expected a short text", LARGEST_TEXT_BYTES >> 20);
-        return Err(Error::new(ErrorKind::FileTooLarge, message));
-    }
+/// The text of a stream, up to `limit` bytes.
+pub fn text_from(stream: impl Read, limit: u64) -> io::Result<String> {
+    text_of(read_at_most(stream, 0, limit)?)
+}
+
+fn text_of(bytes: Vec<u8>) -> io::Result<String> {
     decode(bytes).map_err(|message| Error::new(ErrorKind::InvalidData, message))
 }
 
@@ -80,9 +72,9 @@ mod tests {
             little.clone(),
             big.clone(),
         ] {
-            assert_eq!(text_from(bytes.as_slice()).unwrap(), TEXT);
+            assert_eq!(text_from(bytes.as_slice(), 1000).unwrap(), TEXT);
         }
-        assert_eq!(text_from(&b""[..]).unwrap(), "");
+        assert_eq!(text_from(&b""[..], 1000).unwrap(), "");
     }
 
     #[test]
@@ -96,9 +88,9 @@ mod tests {
             (&utf32[..], "UTF-32"),
             (b"{\n\"name\": \"Stra\xDFe\"}", "line 2 is not UTF-8"),
         ] {
-            let message = text_from(bytes).unwrap_err().to_string();
+            let message = text_from(bytes, 1000).unwrap_err().to_string();
             assert!(message.contains(says) && message.contains("save it as UTF-8"), "{message}");
         }
-        assert!(text_from(io::repeat(b' ')).unwrap_err().to_string().contains("64 MiB"));
+        assert!(text_from(io::repeat(b' '), 1000).unwrap_err().to_string().contains("at most 1000"));
     }
 }

@@ -1,5 +1,7 @@
 //! What a straight line of sight meets first.
 
+use std::ops::ControlFlow;
+
 use bvh::aabb::{Aabb, Bounded, IntersectsAabb};
 use bvh::bounding_hierarchy::BHShape;
 use bvh::bvh::Bvh;
@@ -55,6 +57,27 @@ impl RayCaster {
             }
         }
         best
+    }
+
+    /// Shows `see` the triangles beyond `near` on the ray without end, in no order that means anything: one call for each
+    /// whose box the ray meets, with `None` where it passes the triangle by, until `see` has seen enough and breaks.
+    pub fn hits(
+        &self,
+        from: &Point3<f64>,
+        direction: &Vector3<f64>,
+        near: f64,
+        see: impl FnMut(Option<Sight>) -> ControlFlow<()>,
+    ) {
+        // The tree cannot be walked without any triangle.
+        if self.shapes.is_empty() {
+            return;
+        }
+        let line = Line { from: *from, inverse: direction.map(f64::recip), reach: f64::INFINITY };
+        let sight = |shape: &Shape| {
+            let distance = shape.meets(from, direction).filter(|&distance| distance > near)?;
+            Some(Sight { distance, triangle: shape.triangle })
+        };
+        let _ = self.tree.traverse_iterator(&line, &self.shapes).map(sight).try_for_each(see);
     }
 }
 
@@ -128,6 +151,20 @@ mod tests {
         let hit = rays.first_hit(&Point3::origin(), &Vector3::x(), 100.0).unwrap();
         assert_eq!((hit.triangle, hit.distance), (1, 2.0));
         assert_eq!(rays.first_hit(&Point3::new(2.0, 0.0, 0.0), &Vector3::x(), 100.0).unwrap().triangle, 0);
+    }
+
+    #[test]
+    fn tells_all_that_a_ray_meets() {
+        let rays = RayCaster::new([wall(5.0), wall(2.0), wall(-9.0)].into_iter());
+        let hits = |near| {
+            let mut count = 0;
+            rays.hits(&Point3::origin(), &Vector3::x(), near, |hit| {
+                count += usize::from(hit.is_some());
+                ControlFlow::Continue(())
+            });
+            count
+        };
+        assert_eq!((hits(0.0), hits(3.0), hits(5.0)), (2, 1, 0));
     }
 
     #[test]

@@ -86,10 +86,8 @@ fn loose_freedoms(part: usize, parts: &[Part], candidates: &[Option<Similarity>]
     };
     // The unknowns are in the frame of the edge's first part, which is the common one or this part's own.
     let common_from_chart = if link.edge.a == part { pose } else { Similarity::identity() };
-    let chart = Chart::of_similarity(
-        common_from_chart.apply(&fit.chart.center),
-        common_from_chart.scale * fit.chart.radius,
-    );
+    let chart =
+        Chart::of_similarity(common_from_chart.apply(&fit.chart.center), common_from_chart.scale * fit.chart.radius);
     let information = turned(&fit.information, &common_from_chart);
     freedoms::in_a_parts_frame(&Held { chart, information })
 }
@@ -259,10 +257,8 @@ mod tests {
             used: true,
             reason: None,
         };
-        let chart = Chart::of_similarity(
-            world_from_part(a).inverse().apply(&Point3::origin()),
-            1.7 / world_from_part(a).scale,
-        );
+        let chart =
+            Chart::of_similarity(world_from_part(a).inverse().apply(&Point3::origin()), 1.7 / world_from_part(a).scale);
         let fit = Fit {
             a_from_b: world_from_part(a).inverse() * *error * world_from_part(b),
             chart,

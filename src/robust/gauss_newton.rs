@@ -128,7 +128,9 @@ impl Spectrum {
     fn new(values: &[f64], vectors: &[f64]) -> Spectrum {
         let nothing = Direction { unit: Vector7::zeros(), sigma_m: f64::INFINITY };
         let mut spectrum = Spectrum { directions: [nothing; 7], count: values.len() };
-        for ((direction, &value), vector) in spectrum.directions.iter_mut().zip(values).zip(vectors.chunks(values.len())) {
+        for ((direction, &value), vector) in
+            spectrum.directions.iter_mut().zip(values).zip(vectors.chunks(values.len()))
+        {
             direction.unit.as_mut_slice()[..vector.len()].copy_from_slice(vector);
             direction.sigma_m = if value > 0.0 { value.sqrt().recip() } else { f64::INFINITY };
         }

@@ -85,8 +85,7 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
 
 fn is_serious(rival: &Rival, best: &Rival, limits: &VerdictLimits) -> bool {
     let share = rival.balance / best.balance;
-    share >= limits.rival_share
-        || share >= limits.comparable_share && rival.lead_sigmas < limits.least_lead_sigmas
+    share >= limits.rival_share || share >= limits.comparable_share && rival.lead_sigmas < limits.least_lead_sigmas
 }
 
 /// True where two poses differ along what the data hold.
@@ -225,7 +224,11 @@ mod tests {
     fn a_given_scale_that_the_data_contradict_is_undetermined_and_both_are_told() {
         let wrong = ruling(&[rival([0.0; 3], 0.3, 0.0)], &with_given_scale(-0.049, 0.002), true);
         assert_eq!(wrong.verdict, Verdict::Undetermined);
-        assert!(wrong.reason.contains("the data say 6.522") && wrong.reason.contains("given was 6.85"), "{}", wrong.reason);
+        assert!(
+            wrong.reason.contains("the data say 6.522") && wrong.reason.contains("given was 6.85"),
+            "{}",
+            wrong.reason
+        );
     }
 
     #[test]

@@ -159,6 +159,13 @@ pub struct VerdictLimits {
     pub scale_m: f64,
 }
 
+impl VerdictLimits {
+    /// Least balance of a pose that may be relied on.
+    pub fn least_balance_of(&self, has_cameras: bool) -> f64 {
+        if has_cameras { self.least_balance } else { self.least_balance_without_cameras }
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         Limits {

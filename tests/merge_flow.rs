@@ -234,6 +234,7 @@ fn anchor(world_from_part: Similarity, verdict: Verdict) -> Anchor {
         sigma: 3.0,
         unit: "m",
         determined: verdict == Verdict::Aligned,
+        given: false,
     };
     Anchor {
         common_from_part: world_from_part,

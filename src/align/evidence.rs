@@ -2,7 +2,7 @@
 
 use crate::correspondence::{Candidate, ProbeOnPlane, Refiner, candidate_at, settled};
 use crate::geometry::Similarity;
-use crate::robust::{Chart, Matrix7, Motion};
+use crate::robust::{Chart, Matrix7};
 use crate::verdict::{Evidence, GivenScale, Hold, Rival};
 
 /// The evidence, and the points that it rests on.
@@ -18,15 +18,11 @@ pub(super) struct Gathered {
 /// narrower step by step.
 const GATES_OF_SCALE: [f64; 10] = [5.0, 5.0, 4.0, 3.3, 2.7, 2.3, 2.0, 1.7, 1.3, 1.0];
 
-/// Gathers what the verdict reads.
-pub(super) fn gather(refiner: &Refiner, candidates: &[Candidate]) -> Gathered {
+/// Gathers what the verdict reads of a search's candidates; `given_scale` where the scale was given.
+pub(super) fn gather(refiner: &Refiner, candidates: &[Candidate], given_scale: Option<GivenScale>) -> Gathered {
     let scene = refiner.scene;
     let rows = candidates.first().map_or(Vec::new(), |best| rows(refiner, &best.refined.city_from_level));
     let chart = candidates.first().map_or(chart_of_prior(refiner), |best| best.refined.chart);
-    let given_scale = match scene.prior.motion {
-        Motion::Similarity => None,
-        Motion::Rigid => candidates.first().map(|best| scale_of_data(refiner, &best.refined.city_from_level)),
-    };
     let hold = Hold {
         chart: Chart { center: chart.center + scene.city.model.origin, ..chart },
         by_plane: by_plane(refiner, &chart, &rows),
@@ -68,22 +64,28 @@ fn chart_of_prior(refiner: &Refiner) -> Chart {
 }
 
 /// The scale that the data would have, were it free, from a pose of the given scale on.
-fn scale_of_data(refiner: &Refiner, pose: &Similarity) -> GivenScale {
+pub(super) fn scale_from(refiner: &Refiner, candidate: &Candidate) -> GivenScale {
     let (scene, free) = (refiner.scene, refiner.with_free_scale());
     let firm: Vec<u32> = (0..scene.votes.firm as u32).collect();
-    let near = free.refine(&firm, pose, &GATES_OF_SCALE.map(|gate| gate * scene.unit_m)).city_from_level;
-    let found = settled(&free, &near);
-    let pose = found.city_from_level;
+    let gates_m = GATES_OF_SCALE.map(|gate| gate * scene.unit_m);
+    let near = free.refine(&firm, &candidate.refined.city_from_level, &gates_m).city_from_level;
+    scale_at(&free, &settled(&free, &near).city_from_level)
+}
+
+/// The scale of a pose that was found with the scale free, beside the given one.
+pub(super) fn scale_at(free: &Refiner, pose: &Similarity) -> GivenScale {
+    let scene = free.scene;
+    let chart = free.assess(&[], pose, 0.0).chart;
     // What is known beforehand of all else keeps an open height from opening the scale.
-    let mut information = scene.prior.information(&found.chart);
+    let mut information = scene.prior.information(&chart);
     information[(6, 6)] = 0.0;
-    information += by_plane(&free, &found.chart, &rows(&free, &pose)).iter().sum::<Matrix7>();
+    information += by_plane(free, &chart, &rows(free, pose)).iter().sum::<Matrix7>();
     let variance = information.try_inverse().map_or(0.0, |covariance| covariance[(6, 6)]);
     let given = scene.votes.level_from_sfm.scale;
     GivenScale {
         given,
         of_data: given * pose.scale,
-        log_sigma: if variance > 0.0 { variance.sqrt() / found.chart.radius } else { f64::INFINITY },
-        balance: candidate_at(&free, &pose).balance(),
+        log_sigma: if variance > 0.0 { variance.sqrt() / chart.radius } else { f64::INFINITY },
+        balance: candidate_at(free, pose).balance(),
     }
 }

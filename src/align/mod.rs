@@ -10,7 +10,8 @@ use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
 use crate::planes::{PatchOptions, Patches, PreparedCity, UpChoice, Upright, choose_up, patches};
 use crate::reconstruction::Reconstruction;
-use crate::verdict::{Alignment, judge};
+use crate::robust::Motion;
+use crate::verdict::{Alignment, GivenScale, judge};
 
 /// Which way is up in the reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -58,23 +59,38 @@ pub fn align(
 ) -> Alignment {
     progress("patches", 0, 1);
     let patches = patches(reconstruction, superpixels, &PatchOptions::default());
-    let start = options.start.about(options.start.city_from_sfm().relative_to(&city.model.origin));
+    let start = local_start(options, &patches, city);
     if let Some(obstacle) = obstacle::find(city, reconstruction, &patches, &start, &options.limits) {
         return report::refused(&obstacle, city, &patches, options);
     }
     progress("city", 0, 1);
-    let uprights = uprights(&patches, &start, options.up);
-    let views = uprights.iter().map(|upright| {
-        let scene = Scene::new(city, &patches, &start, options.fixed_scale, upright, &options.limits);
-        let hypotheses = search(&scene, options.seed, &|done, of| progress("search", done, of));
-        let candidates = candidates(&Refiner::new(&scene), &hypotheses);
-        View { scene, hypotheses, candidates }
-    });
-    let view = View::best_of(views.collect());
+    let task = Task { city, patches: &patches, start: &start, options, progress };
+    let view = task.best_view(if options.fixed_scale.is_some() { Motion::Rigid } else { Motion::Similarity });
     let refiner = Refiner::new(&view.scene);
-    let holding = evidence::gather(&refiner, &view.candidates);
+    let given_scale = options.fixed_scale.and_then(|_| task.scale_of_data(&refiner, &view.candidates));
+    let holding = evidence::gather(&refiner, &view.candidates, given_scale);
     let ruling = judge(&holding.evidence, &options.limits.verdict);
     report::tell(ruling, holding, &view.hypotheses, &patches, city, options)
+}
+
+/// The start in the city's local frame. A scale that is given takes the place of the start's, about the cloud's middle.
+fn local_start(options: &AlignOptions, patches: &Patches, city: &PreparedCity) -> Start {
+    let city_from_sfm = options.start.city_from_sfm().relative_to(&city.model.origin);
+    let middle = patches.middle();
+    options.start.about(match options.fixed_scale {
+        None => city_from_sfm,
+        Some(scale) => Similarity::about(&middle, &city_from_sfm.apply(&middle), scale, city_from_sfm.rotation),
+    })
+}
+
+/// What is to be aligned, and how.
+struct Task<'a> {
+    city: &'a PreparedCity,
+    patches: &'a Patches,
+    /// To the city's local frame; of the given scale where there is one.
+    start: &'a Start,
+    options: &'a AlignOptions,
+    progress: Progress<'a>,
 }
 
 /// One way of taking up, searched.
@@ -84,24 +100,44 @@ struct View<'a> {
     candidates: Vec<Candidate>,
 }
 
-impl<'a> View<'a> {
-    /// The view with the best candidate, joined by the candidates of the others.
-    fn best_of(mut views: Vec<View<'a>>) -> View<'a> {
+impl<'a> Task<'a> {
+    /// Searches under every up that there may be; the view with the best candidate, joined by the candidates of the others.
+    fn best_view(&self, motion: Motion) -> View<'a> {
+        let uprights = uprights(self.patches, self.start, self.options.up);
+        let mut views: Vec<View> = uprights.iter().map(|upright| self.view(upright, motion)).collect();
         let balance = |view: &View| view.candidates.first().map_or(f64::NEG_INFINITY, Candidate::balance);
         let at = (0..views.len()).max_by(|&a, &b| balance(&views[a]).total_cmp(&balance(&views[b])).then(b.cmp(&a)));
         let mut best = views.swap_remove(at.unwrap_or(0));
         let sfm_from_level = best.scene.votes.level_from_sfm.inverse();
-        let others: Vec<(Similarity, Candidate)> = views
-            .into_iter()
-            .flat_map(|view| {
-                let other_from_level = view.scene.votes.level_from_sfm * sfm_from_level;
-                view.candidates.into_iter().map(move |c| (other_from_level, c))
-            })
-            .collect();
+        let seen_from_best = |view: View<'a>| {
+            let other_from_level = view.scene.votes.level_from_sfm * sfm_from_level;
+            view.candidates.into_iter().map(move |candidate| (other_from_level, candidate))
+        };
+        let others: Vec<(Similarity, Candidate)> = views.into_iter().flat_map(seen_from_best).collect();
         if !others.is_empty() {
             best.candidates = joined(&Refiner::new(&best.scene), best.candidates, &others);
         }
         best
+    }
+
+    fn view(&self, upright: &Upright, motion: Motion) -> View<'a> {
+        let scene = Scene::new(self.city, self.patches, self.start, motion, upright, &self.options.limits);
+        let hypotheses = search(&scene, self.options.seed, &|done, of| (self.progress)("search", done, of));
+        let candidates = candidates(&Refiner::new(&scene), &hypotheses);
+        View { scene, hypotheses, candidates }
+    }
+
+    /// What the data say of a scale that was given: beside the best pose, and where that is not one to rely on, by a search of its own.
+    fn scale_of_data(&self, refiner: &Refiner, candidates: &[Candidate]) -> Option<GivenScale> {
+        let beside = candidates.first().map(|best| evidence::scale_from(refiner, best));
+        let limits = &self.options.limits.verdict;
+        let least = limits.least_balance_of(!refiner.scene.votes.cameras.is_empty());
+        if beside.is_some_and(|scale| scale.balance >= least) {
+            return beside;
+        }
+        let free = self.best_view(Motion::Similarity);
+        let best = free.candidates.first()?;
+        Some(evidence::scale_at(&Refiner::new(&free.scene), &best.refined.city_from_level))
     }
 }
 

@@ -24,19 +24,16 @@ pub struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// `start` maps to the city's local frame. A scale that is given (metres per sfm unit) takes the place of the start's, about the
-    /// cloud's middle.
+    /// `start` maps to the city's local frame; with a rigid motion its scale is the given one.
     pub fn new(
         city: &'a PreparedCity,
         patches: &Patches,
         start: &Start,
-        given_scale: Option<f64>,
+        motion: Motion,
         upright: &Upright,
         limits: &'a Limits,
     ) -> Scene<'a> {
-        let city_from_sfm = with_scale(start.city_from_sfm(), given_scale, patches);
-        let votes = Votes::new(patches, &city_from_sfm, upright, limits);
-        let motion = if given_scale.is_some() { Motion::Rigid } else { Motion::Similarity };
+        let votes = Votes::new(patches, start.city_from_sfm(), upright, limits);
         let prior = Prior::new(start, votes.center_in_city, motion, upright.known, city.model.bounds(), limits);
         let unit_m = limits.model_unit_m + limits.noise_sigmas * votes.noise_m;
         // A pose may be as much larger than the start as the scale allows, and its gates with it.
@@ -58,10 +55,4 @@ impl<'a> Scene<'a> {
     pub fn city_from_sfm(&self, city_from_level: &Similarity) -> Similarity {
         *city_from_level * self.votes.level_from_sfm
     }
-}
-
-fn with_scale(city_from_sfm: &Similarity, scale: Option<f64>, patches: &Patches) -> Similarity {
-    let Some(scale) = scale else { return *city_from_sfm };
-    let middle = patches.middle();
-    Similarity::about(&middle, &city_from_sfm.apply(&middle), scale, city_from_sfm.rotation)
 }

@@ -54,7 +54,7 @@ const WORTH_TELLING: f64 = 0.25;
 /// Judges the best of the rivals by the hold that the data have on it.
 pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
     let Evidence { rivals, hold, has_cameras } = evidence;
-    let least = if *has_cameras { limits.least_balance } else { limits.least_balance_without_cameras };
+    let least = limits.least_balance_of(*has_cameras);
     let Some(best) = rivals.first() else {
         return Ruling {
             verdict: Verdict::Failed,

@@ -65,8 +65,8 @@ fn add_source(
     let (path, role, precision_m) = (source.path.clone(), source.role, source.precision_m);
     let of_file = CitySource { path, role, facets: facets.clone(), objects, precision_m };
     // `validate` must see the turned model.
-    turn_outward(model, &of_file, warnings, &place_of);
-    validate(model, &of_file, warnings, &place_of);
+    turn_outward(model, &of_file, warnings, place_of);
+    validate(model, &of_file, warnings, place_of);
     model.sources.push(of_file);
     Ok(())
 }

@@ -322,9 +322,9 @@ impl Sky {
             shell.members.iter().for_each(|&member| shell_of_member[member] = at as u32);
         }
         let (mut triangles, mut shell_of) = (Vec::new(), Vec::new());
-        for member in 0..object.facets.len() {
+        for (member, &shell) in shell_of_member.iter().enumerate() {
             triangles.extend(object.model.triangles_of(object.facet(member)));
-            shell_of.resize(triangles.len(), shell_of_member[member]);
+            shell_of.resize(triangles.len(), shell);
         }
         let direction = |at: usize| {
             let azimuth = FIRST_AZIMUTH + at as f64 * std::f64::consts::TAU / AZIMUTHS as f64;

@@ -406,8 +406,8 @@ fn pipes_and_devices_are_refused_instead_of_waited_for() {
     let room = room();
     assert!(std::process::Command::new("mkfifo").arg(room.path().join("pipe")).status().unwrap().success());
     let (city, sfm, start) = (sample("city.obj"), sample("sfm"), sample("start.json"));
-    for endless in ["pipe", "/dev/zero"] {
-        let says: &[&str] = &["a pipe or a device", endless];
+    for (endless, what) in [("pipe", "a pipe"), ("/dev/zero", "a device")] {
+        let says: &[&str] = &[what, endless];
         Align { city: endless.into(), ..Align::sample() }.refused(&room, says);
         Align { sfm: endless.into(), ..Align::sample() }.refused(&room, says);
         Align { start: Some(endless.into()), ..Align::sample() }.refused(&room, says);

@@ -31,6 +31,34 @@ const REACH_SIGMAS: f64 = 3.0;
 /// An open direction that is all scale and hardly any translation cannot be written as a plane.
 const SMALLEST_ACROSS: f64 = 1e-3;
 
+/// Where a patch is expected under a belief.
+pub(super) struct Expectation<'a> {
+    belief: &'a Belief,
+    /// Of the patch's centre from the middle of the cloud, city directions.
+    arm: Vector3<f64>,
+    row_variance: f64,
+    /// The box that holds its centre within three sigmas.
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+}
+
+impl Expectation<'_> {
+    /// How likely the patch lies on the target, times the target's weight; `None` beyond three sigmas.
+    #[inline]
+    pub fn likelihood(&self, target: &Target) -> Option<f64> {
+        // The patch's centre must be able to lie within the target's box.
+        if (0..3).any(|k| self.high[k] < target.low[k] || self.low[k] > target.high[k]) {
+            return None;
+        }
+        let n = &target.plane.normal;
+        let row = Vector4::new(n.dot(&self.arm), n.x, n.y, n.z);
+        let residual = row.dot(&self.belief.mean) + target.plane.offset;
+        let variance = row.dot(&(self.belief.covariance * row)) + self.row_variance;
+        let miss_sq = residual * residual / variance;
+        (miss_sq <= REACH_SIGMAS * REACH_SIGMAS).then(|| target.weight * (-0.5 * miss_sq).exp())
+    }
+}
+
 impl RowErrors {
     pub fn new(limits: &SearchLimits, radius_m: f64) -> RowErrors {
         RowErrors {
@@ -88,29 +116,20 @@ impl Belief {
         row.dot(&(self.covariance * row))
     }
 
-    /// How likely a patch at `point` lies on the target, times the target's weight; `None` beyond three sigmas.
-    pub fn likelihood(&self, point: &Point3<f64>, target: &Target) -> Option<f64> {
-        let row = self.row(point, &target.plane.normal);
-        let residual = row.dot(&self.mean) + target.plane.offset;
-        let variance = row.dot(&(self.covariance * row)) + self.row_variance(point);
-        let miss_sq = residual * residual / variance;
-        if miss_sq > REACH_SIGMAS * REACH_SIGMAS {
-            return None;
-        }
-        // The patch's centre must be able to lie within the target's box.
-        let expected = self.turn(&point.coords) * self.mean[0] + self.mean.fixed_rows::<3>(1);
+    /// Where a patch at `point` is expected.
+    pub fn expect(&self, point: &Point3<f64>) -> Expectation<'_> {
         let arm = self.turn(&point.coords);
         let spun = self.spin.cross(&arm);
-        for k in 0..3 {
+        let row_variance = self.row_variance(point);
+        let slack = |k: usize| {
             let spread = self.covariance[(0, 0)] * arm[k] * arm[k]
                 + 2.0 * self.covariance[(0, k + 1)] * arm[k]
                 + self.covariance[(k + 1, k + 1)];
-            let slack = REACH_SIGMAS * (spread.max(0.0) + spun[k] * spun[k] + self.row_variance(point)).sqrt();
-            if expected[k] < target.low[k] - slack || expected[k] > target.high[k] + slack {
-                return None;
-            }
-        }
-        Some(target.weight * (-0.5 * miss_sq).exp())
+            REACH_SIGMAS * (spread.max(0.0) + spun[k] * spun[k] + row_variance).sqrt()
+        };
+        let slack = Vector3::new(slack(0), slack(1), slack(2));
+        let expected = arm * self.mean[0] + self.mean.fixed_rows::<3>(1);
+        Expectation { belief: self, arm, row_variance, low: expected - slack, high: expected + slack }
     }
 
     /// Rows for the `missing` least known combinations of scale and translation, each at a value drawn evenly from the three
@@ -194,10 +213,10 @@ mod tests {
         let spinning = belief.spinning(Vector3::x() * 0.5);
         let place = Point3::new(5.0, 40.0, 0.0);
         // The wall stands 45 m higher: out of reach, but for a spin of some sigmas about the wall's own normal.
-        assert!(belief.likelihood(&place, &wall(0.0, -5.0)).is_some());
-        assert!(belief.likelihood(&place, &wall(45.0, -5.0)).is_none());
-        assert_eq!(spinning.likelihood(&place, &wall(45.0, -5.0)), belief.likelihood(&place, &wall(0.0, -5.0)));
-        assert!(spinning.likelihood(&place, &wall(45.0, -80.0)).is_none());
+        assert!(belief.expect(&place).likelihood(&wall(0.0, -5.0)).is_some());
+        assert!(belief.expect(&place).likelihood(&wall(45.0, -5.0)).is_none());
+        assert_eq!(spinning.expect(&place).likelihood(&wall(45.0, -5.0)), belief.expect(&place).likelihood(&wall(0.0, -5.0)));
+        assert!(spinning.expect(&place).likelihood(&wall(45.0, -80.0)).is_none());
     }
 
     #[test]

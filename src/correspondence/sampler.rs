@@ -124,8 +124,8 @@ impl<'a> Sampler<'a> {
     /// Known up: one pair, and the heading that turns its patch into its plane.
     fn begin_level(&self, random: &mut Random) -> Option<Draft> {
         let first = random.weighted(&self.turned)?;
-        let Drawn { what: (heading_rad, pair), chance } = self.turned_pair(first, random)?;
-        let mut draft = Draft::new(self.belief(about_up(heading_rad)));
+        let Drawn { what: (rotation, pair), chance } = self.turned_pair(first, random)?;
+        let mut draft = Draft::new(self.belief(rotation));
         draft.take(self.votes, Drawn { what: pair, chance });
         Some(draft)
     }
@@ -149,22 +149,19 @@ impl<'a> Sampler<'a> {
         Belief::new(self.prior, rotation, self.errors)
     }
 
-    /// A plane for the first patch under known up, and the heading that turns the patch into it.
-    fn turned_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<(f64, Pair)>> {
+    /// A plane for the first patch under known up, and the turn about up that leads the patch into it.
+    fn turned_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<(Matrix3<f64>, Pair)>> {
         let p = &self.votes.patches[patch];
         let reach = self.prior.most_heading_rad();
         let belief = self.belief(Matrix3::identity());
         let mut choice = Choice::default();
         for normal in sides(p) {
-            let own = azimuth(&normal);
-            for t in self.targets.facing(own, reach) {
-                if !self.same_tilt(&normal, t) {
-                    continue;
-                }
-                let heading = wrapped(t.azimuth - own);
-                let turned = belief.turned(about_up(heading));
-                if let Some(likelihood) = turned.likelihood(&p.center, t) {
-                    choice.offer(likelihood, (heading, t.with(patch, normal)), random);
+            let has_same_tilt = self.tilted_as(&normal);
+            for t in self.targets.facing(azimuth(&normal), reach).filter(|t| has_same_tilt(t)) {
+                let rotation = about_up_from(&normal, &t.plane.normal);
+                let turned = belief.turned(rotation);
+                if let Some(likelihood) = turned.expect(&p.center).likelihood(t) {
+                    choice.offer(likelihood, (rotation, t.with(patch, normal)), random);
                 }
             }
         }
@@ -182,7 +179,7 @@ impl<'a> Sampler<'a> {
             for t in self.targets.all() {
                 let Some(rotation) = turn_onto(t) else { continue };
                 let leaning = belief.turned(rotation).spinning(self.prior.spin_sigma_about(&t.plane.normal));
-                if let Some(likelihood) = leaning.likelihood(&p.center, t) {
+                if let Some(likelihood) = leaning.expect(&p.center).likelihood(t) {
                     choice.offer(likelihood, t.with(patch, normal), random);
                 }
             }
@@ -210,7 +207,7 @@ impl<'a> Sampler<'a> {
                 }
                 let mut turned = belief.turned(rotation);
                 turned.learn(first_center, &first.target);
-                if let Some(likelihood) = turned.likelihood(&p.center, t) {
+                if let Some(likelihood) = turned.expect(&p.center).likelihood(t) {
                     choice.offer(likelihood, (rotation, t.with(patch, normal)), random);
                 }
             }
@@ -267,17 +264,16 @@ impl<'a> Sampler<'a> {
 
     fn next_pair(&self, patch: usize, belief: &Belief, random: &mut Random) -> Option<Drawn<Pair>> {
         let p = &self.votes.patches[patch];
+        let expected = belief.expect(&p.center);
         let mut choice = Choice::default();
         for side in sides(p) {
             let normal = belief.turn(&side);
             let level: &[Target] = if has_azimuth(&normal) { &[] } else { &self.targets.level };
             let turned =
                 self.targets.facing(azimuth(&normal), if level.is_empty() { self.limits.same_angle_rad } else { 0.0 });
-            for t in turned.chain(level) {
-                if !self.same_tilt(&normal, t) {
-                    continue;
-                }
-                if let Some(likelihood) = belief.likelihood(&p.center, t) {
+            let has_same_tilt = self.tilted_as(&normal);
+            for t in turned.chain(level).filter(|t| has_same_tilt(t)) {
+                if let Some(likelihood) = expected.likelihood(t) {
                     choice.offer(likelihood, t.with(patch, side), random);
                 }
             }
@@ -285,8 +281,10 @@ impl<'a> Sampler<'a> {
         choice.drawn()
     }
 
-    fn same_tilt(&self, normal: &Vector3<f64>, target: &Target) -> bool {
-        (elevation(normal) - target.elevation).abs() < self.limits.same_angle_rad
+    /// Whether a target is tilted as a normal is.
+    fn tilted_as(&self, normal: &Vector3<f64>) -> impl Fn(&Target) -> bool + use<> {
+        let (own, most) = (elevation(normal), self.limits.same_angle_rad);
+        move |target| (own - target.elevation).abs() < most
     }
 }
 
@@ -353,6 +351,13 @@ impl<T> Choice<T> {
 fn sides(patch: &LevelPatch) -> impl Iterator<Item = Vector3<f64>> + use<> {
     let normal = patch.normal;
     [1.0, -1.0].into_iter().take(if patch.sided { 1 } else { 2 }).map(move |side| normal * side)
+}
+
+/// The turn about up that leads one normal to the azimuth of another.
+fn about_up_from(from: &Vector3<f64>, to: &Vector3<f64>) -> Matrix3<f64> {
+    let lengths = from.xy().norm() * to.xy().norm();
+    let (cos, sin) = (from.xy().dot(&to.xy()) / lengths, from.xy().perp(&to.xy()) / lengths);
+    Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
 }
 
 /// The turn by a heading.

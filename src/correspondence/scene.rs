@@ -18,10 +18,15 @@ pub struct Scene<'a> {
     /// The part of the city that the cloud can come to lie in. What lies beyond is met by stray points alone, of which a handful would count
     /// as much as a facade: a plane's own error bounds what its points say.
     pub reach: Reach,
-    grid: Arc<FacetGrid>,
+    /// Of the city, for the gates of refinement and for those of the search: the shorter a grid reaches, the fewer facets it looks at.
+    narrow_grid: Arc<FacetGrid>,
+    wide_grid: Arc<FacetGrid>,
     /// What "near" means to all gates, metres of the start.
     pub unit_m: f64,
 }
+
+/// The widest gate at which most of the refinement is done, units.
+const REFINING_GATE_UNITS: f64 = 1.7;
 
 impl<'a> Scene<'a> {
     /// `start` maps to the city's local frame; with a rigid motion its scale is the given one.
@@ -37,9 +42,10 @@ impl<'a> Scene<'a> {
         let prior = Prior::new(start, votes.center_in_city, motion, upright.known, city.model.bounds(), limits);
         let unit_m = limits.model_unit_m + limits.noise_sigmas * votes.noise_m;
         // A pose may be as much larger than the start as the scale allows, and its gates with it.
-        let grid = city.grid(limits.search.gate_units * unit_m * prior.most_scale());
+        let grid = |gate_units: f64| city.grid(gate_units * unit_m * prior.most_scale());
+        let (narrow_grid, wide_grid) = (grid(REFINING_GATE_UNITS), grid(limits.search.gate_units));
         let reach = prior.reach(&votes.extent());
-        Scene { city, limits, votes, prior, reach, grid, unit_m }
+        Scene { city, limits, votes, prior, reach, narrow_grid, wide_grid, unit_m }
     }
 
     /// The facet that a point lies on.
@@ -48,7 +54,8 @@ impl<'a> Scene<'a> {
         if !self.reach.contains(&probe.position) {
             return None;
         }
-        self.grid.nearest(probe, gate_m, self.city)
+        let grid = if gate_m <= self.narrow_grid.reach_m() { &self.narrow_grid } else { &self.wide_grid };
+        grid.nearest(probe, gate_m, self.city)
     }
 
     /// To the city's local frame.

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use bvh::aabb::{Aabb, Bounded, IntersectsAabb};
-use bvh::bounding_hierarchy::BHShape;
+use bvh::bounding_hierarchy::{BHShape, BoundingHierarchy};
 use bvh::bvh::Bvh;
 use nalgebra::{Point3, Vector3};
 
@@ -37,7 +37,7 @@ impl RayCaster {
             node: 0,
         };
         let mut shapes: Vec<Shape> = triangles.enumerate().map(shape).collect();
-        let tree = Bvh::build(&mut shapes);
+        let tree = Bvh::build_par(&mut shapes);
         RayCaster { shapes, tree }
     }
 

@@ -48,6 +48,7 @@ pub struct FacetGrid {
     reach_m: f64,
     low: Point3<f64>,
     cell_m: f64,
+    cells_per_m: f64,
     /// Tiles along each axis.
     tiles: [usize; 3],
     /// For each tile the triangles that come within reach of it: those of tile `i` are `near[starts[i]..starts[i + 1]]`.
@@ -95,6 +96,7 @@ impl FacetGrid {
             reach_m,
             low,
             cell_m: tile_m / TILE as f64,
+            cells_per_m: TILE as f64 / tile_m,
             tiles,
             starts: Vec::new(),
             near: Vec::new(),
@@ -142,7 +144,7 @@ impl FacetGrid {
     #[inline]
     pub fn nearest(&self, probe: &Probe, gate_m: f64, city: &PreparedCity) -> Option<Hit> {
         let p = &probe.position;
-        let d = (p - self.low) / self.cell_m;
+        let d = (p - self.low) * self.cells_per_m;
         if !(d.x >= 0.0 && d.y >= 0.0 && d.z >= 0.0) {
             return None;
         }

@@ -36,11 +36,93 @@ pub struct Limits {
     /// down, radians. Derived: a right angle less 37 degrees, and some slack.
     pub tells_floors_rad: f64,
 
+    pub exposure: ExposureLimits,
+    pub patches: PatchLimits,
+    pub up: UpLimits,
     pub search: SearchLimits,
     pub refinement: RefinementLimits,
     pub walk: WalkLimits,
     pub sight: SightLimits,
     pub verdict: VerdictLimits,
+}
+
+/// Which facets somebody could have seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExposureLimits {
+    /// Lines of sight start this far off the facet. Chosen: beyond the mortar between the walls of two houses.
+    pub start_m: f64,
+    /// What is nearer than this in front of a facet hides it. Chosen: nobody stands there.
+    pub narrowest_gap_m: f64,
+    /// Lines of sight that meet nothing within this distance end in the open. Chosen: wider than a courtyard.
+    pub open_m: f64,
+    /// Larger triangles are looked at from three places, square metres. Chosen.
+    pub large_triangle_m2: f64,
+}
+
+/// How planar patches are made of points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchLimits {
+    /// A larger cloud is thinned evenly to about this many points. Derived: more do not make a pose better, since the model's own
+    /// error is shared by all points of a plane.
+    pub most_points: usize,
+    /// Fewest points of a patch. Derived: a plane is fixed by three; as many more and two can contradict.
+    pub fewest_points: usize,
+    /// Fewest points of a superpixel that get a plane of their own. Derived: three define it, three more can contradict.
+    pub fewest_in_superpixel: usize,
+    /// A superpixel has a plane when at least this share of its points lies in it. Chosen.
+    pub planar_share: f64,
+    /// Points belong to a plane within this many sigmas of its noise. Derived: 99 % of Gaussian noise.
+    pub gate_sigmas: f64,
+    /// Normals of neighbours in one region differ by no more than this. Derived: local planes of 14 points are good to some 4
+    /// degrees, edges of buildings turn by 20 and more.
+    pub same_normal_deg: f64,
+    /// A local plane rougher than this starts no region: its thickness over its width. Chosen.
+    pub seed_roughness: f64,
+}
+
+/// Which way is up. Measured with these: on 173 captures with known up (whole or cut to 3 to 8 photographs in a row, or clouds without
+/// cameras), seven starts each, the errors of up were 0.7 of its sigmas in the median, 2.0 at 95 % and 3.5 at most where the start's
+/// tilt has a sigma of 20 degrees or less; nine pairs of real captures of one place differed by at most 1.9 of theirs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UpLimits {
+    /// Up worse than this is not known. Derived: three sigmas of it are what the normals of a right pair of patch and plane may differ
+    /// by.
+    pub known_sigma_rad: f64,
+    /// More directions than this are not searched one by one. Measured on the sample: 2 s for each against 20 s turning freely.
+    pub most_known: usize,
+    /// Optima are distinct beyond so many of their common sigmas. Derived: 99 % of Gaussian errors.
+    pub distinct_sigmas: f64,
+    /// ... and comparable with at least this share of the best one's support. Measured on the scenes: level photographs of one facade
+    /// support it as a floor, seen by cameras that are turned by a quarter, with 0.6 to 0.8 of the right support.
+    pub comparable_share: f64,
+    /// What leaving the start costs for each squared sigma, shares of the support. Chosen: all of its reach as much as half of one
+    /// kind of voters.
+    pub cost_of_leaving: f64,
+    /// Of walls, floors and roofs. Chosen: walls are built to a third of a degree; streets, yards and flat roofs fall by a few per
+    /// cent.
+    pub patches: UpHabits,
+    /// Of cameras. Chosen: hands tilt a camera by a few degrees at random, and by half a degree as a habit.
+    pub cameras: UpHabits,
+    /// So many votes off by a kernel stand in for what few voters cannot tell of their scatter. Measured on 173 captures.
+    pub votes_of_kernel: f64,
+    /// Nobody looks up at a building more steeply than this: sine of 50 degrees. Chosen.
+    pub steepest_view: f64,
+    /// A camera that looks straight down may lean so far (sine) that its y axis points up. Chosen.
+    pub upside_down: f64,
+    /// What a photograph counts that was turned by a quarter. Chosen: fewer are than not. Turned ones alone still outvote what else
+    /// their axes would allow, which makes half of them look at the sky.
+    pub quarter_turned: f64,
+}
+
+/// How voters for up err, radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UpHabits {
+    /// A voter this far off still votes, with a weight that has fallen to a quarter.
+    pub kernel_rad: f64,
+    /// The error that voters of one direction share, where they ask for an up across that direction ...
+    pub shared_across_rad: f64,
+    /// ... and along it.
+    pub shared_along_rad: f64,
 }
 
 /// How hypotheses are drawn, ranked and kept.
@@ -79,6 +161,10 @@ pub struct SearchLimits {
     pub learned_m: f64,
     /// Patches that lie on the city: the others are trees, cars, and houses that the model lacks. Chosen: half.
     pub on_city: f64,
+    /// Time to draw one pair (2 to 10 us, by the city) and to score one pose on the ranking probes (10 to 40 us). Measured on one core of a
+    /// shared EPYC, 2026-11-25; their ratio matters.
+    pub pair_us: f64,
+    pub score_us: f64,
 }
 
 /// How a pose is made sharp.
@@ -99,6 +185,29 @@ pub struct RefinementLimits {
     pub least_gate_share: f64,
     /// Two poses that move no corner of the scene by more than this are one, units. Chosen.
     pub same_pose_units: f64,
+    /// Rounds of improvement, each with more probes, narrower gates and fewer poses. Chosen.
+    pub stages: [StageLimits; 3],
+    /// Probes whose lines of sight are traced, that compare a pose with the best, and that rank at most. Derived: a larger panel
+    /// changes the third digit.
+    pub sight_probes: usize,
+    pub lead_probes: usize,
+    pub most_voters: usize,
+}
+
+/// A round of improvement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageLimits {
+    /// Probes that refine and rank; all of the patches' where the cloud has fewer.
+    pub probes: usize,
+    /// Gates of refinement, one step each, and of ranking, units.
+    pub gates_units: &'static [f64],
+    pub ranking_gate_units: f64,
+    /// Whether lines of sight count.
+    pub sight: bool,
+    /// Whether better poses in the basins beside join first.
+    pub basins: bool,
+    /// Poses that go on.
+    pub keep: usize,
 }
 
 /// How poses are moved along what the data hold loosely or not at all.
@@ -112,6 +221,10 @@ pub struct WalkLimits {
     pub most_steps: i32,
     /// Moves into neighbouring basins, units. Chosen: parallel planes of one facade stand some decimetres apart.
     pub basin_moves_units: [f64; 4],
+    /// Gates of refinement after such a move, units. Derived: as wide as a move, then as a vote.
+    pub basin_gates_units: [f64; 4],
+    /// Probes that say which of two basins explains more. Chosen.
+    pub basin_probes: usize,
     /// Rounds of such moves. Chosen.
     pub most_rounds: usize,
     /// A walk by the score ends within this many units of the right place. Chosen.
@@ -153,6 +266,8 @@ pub struct VerdictLimits {
     pub determined_m: f64,
     /// Fewest points that hold a plane. Derived: a single point lies on a plane by chance.
     pub fewest_on_plane: usize,
+    /// Gates that lead from a given scale to the data's own, units. Derived: from the search's to a vote's, step by step.
+    pub scale_gates_units: &'static [f64],
     /// The data contradict a given scale where theirs is so many sigmas away ... Derived: 99.7 % of Gaussian errors.
     pub scale_sigmas: f64,
     /// ... and at the scene's radius at least so far. Derived: three sigmas of a plane of the model, which alone explain as much.
@@ -180,6 +295,29 @@ impl Default for Limits {
             grazing_deg: 83.0,
             upright_sin: 0.2,
             tells_floors_rad: 0.8,
+            exposure: ExposureLimits { start_m: 0.06, narrowest_gap_m: 0.5, open_m: 40.0, large_triangle_m2: 4.0 },
+            patches: PatchLimits {
+                most_points: 40_000,
+                fewest_points: 8,
+                fewest_in_superpixel: 6,
+                planar_share: 0.6,
+                gate_sigmas: 2.5,
+                same_normal_deg: 20.0,
+                seed_roughness: 0.35,
+            },
+            up: UpLimits {
+                known_sigma_rad: 0.04,
+                most_known: 3,
+                distinct_sigmas: 3.0,
+                comparable_share: 0.6,
+                cost_of_leaving: 0.05,
+                patches: UpHabits { kernel_rad: 0.035, shared_across_rad: 0.005, shared_along_rad: 0.02 },
+                cameras: UpHabits { kernel_rad: 0.06, shared_across_rad: 0.01, shared_along_rad: 0.01 },
+                votes_of_kernel: 1.0,
+                steepest_view: 0.77,
+                upside_down: 0.2,
+                quarter_turned: 0.7,
+            },
             search: SearchLimits {
                 fewest_samples: 8192,
                 most_samples: 65_536,
@@ -195,6 +333,8 @@ impl Default for Limits {
                 row_sigma_per_m: 0.015,
                 learned_m: 1.0,
                 on_city: 0.5,
+                pair_us: 5.0,
+                score_us: 20.0,
             },
             refinement: RefinementLimits {
                 outside_share: 0.5,
@@ -204,12 +344,43 @@ impl Default for Limits {
                 tukey_sigmas: 4.685,
                 least_gate_share: 0.2,
                 same_pose_units: 2.5,
+                stages: [
+                    StageLimits {
+                        probes: 400,
+                        gates_units: &[5.0, 5.0, 4.0, 3.3, 2.7],
+                        ranking_gate_units: 2.3,
+                        sight: false,
+                        basins: false,
+                        keep: 16,
+                    },
+                    StageLimits {
+                        probes: 1500,
+                        gates_units: &[2.7, 2.3, 2.0, 1.7, 1.7],
+                        ranking_gate_units: 1.3,
+                        sight: true,
+                        basins: false,
+                        keep: 6,
+                    },
+                    StageLimits {
+                        probes: usize::MAX,
+                        gates_units: &[1.7, 1.3, 1.0, 1.0],
+                        ranking_gate_units: 1.0,
+                        sight: true,
+                        basins: true,
+                        keep: 6,
+                    },
+                ],
+                sight_probes: 500,
+                lead_probes: 1000,
+                most_voters: 3000,
             },
             walk: WalkLimits {
                 loose_m: 0.25,
                 step_of_gate: 0.5,
                 most_steps: 120,
                 basin_moves_units: [-2.0, -1.0, 1.0, 2.0],
+                basin_gates_units: [1.7, 1.3, 1.0, 1.0],
+                basin_probes: 1500,
                 most_rounds: 3,
                 settling_units: 4.0,
                 unmoved_share: 0.3,
@@ -224,6 +395,7 @@ impl Default for Limits {
                 same_m: 0.8,
                 determined_m: 0.35,
                 fewest_on_plane: 2,
+                scale_gates_units: &[5.0, 5.0, 4.0, 3.3, 2.7, 2.3, 2.0, 1.7, 1.3, 1.0],
                 scale_sigmas: 3.0,
                 scale_m: 0.15,
             },

@@ -14,7 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("imagery", &["geometry", "format", "reconstruction"]),
     ("solvers", &["geometry"]),
     ("robust", &["geometry", "solvers"]),
-    ("planes", &["geometry", "city", "reconstruction", "imagery", "robust"]),
+    ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["limits", "geometry", "city", "planes", "solvers", "robust"]),
     ("verdict", &["limits", "geometry", "robust"]),
     (

@@ -14,10 +14,6 @@ pub(super) struct Gathered {
     pub firm: usize,
 }
 
-/// Gates that lead from a scale that is some per cent wrong to the data's own, units of the scene: as wide as the search's, then
-/// narrower step by step.
-const GATES_OF_SCALE: [f64; 10] = [5.0, 5.0, 4.0, 3.3, 2.7, 2.3, 2.0, 1.7, 1.3, 1.0];
-
 /// Gathers what the verdict reads of a search's candidates; `given_scale` where the scale was given.
 pub(super) fn gather(refiner: &Refiner, candidates: &[Candidate], given_scale: Option<GivenScale>) -> Gathered {
     let scene = refiner.scene;
@@ -67,7 +63,7 @@ fn chart_of_prior(refiner: &Refiner) -> Chart {
 pub(super) fn scale_from(refiner: &Refiner, candidate: &Candidate) -> GivenScale {
     let (scene, free) = (refiner.scene, refiner.with_free_scale());
     let firm: Vec<u32> = (0..scene.votes.firm as u32).collect();
-    let gates_m = GATES_OF_SCALE.map(|gate| gate * scene.unit_m);
+    let gates_m: Vec<f64> = scene.limits.verdict.scale_gates_units.iter().map(|gate| gate * scene.unit_m).collect();
     let near = free.refine(&firm, &candidate.refined.city_from_level, &gates_m).city_from_level;
     scale_at(&free, &settled(&free, &near).city_from_level)
 }

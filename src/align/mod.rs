@@ -8,10 +8,10 @@ use crate::correspondence::{Candidate, Hypotheses, Refiner, Scene, candidates, j
 use crate::geometry::{Similarity, Start, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
-use crate::planes::{PatchOptions, Patches, PreparedCity, UpChoice, Upright, choose_up, patches};
+use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
-use crate::verdict::{Alignment, GivenScale, judge};
+use crate::verdict::{Alignment, GivenScale, Ruling, Verdict, judge};
 
 /// Which way is up in the reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -58,7 +58,7 @@ pub fn align(
     progress: Progress<'_>,
 ) -> Alignment {
     progress("patches", 0, 1);
-    let patches = patches(reconstruction, superpixels, &PatchOptions::default());
+    let patches = patches(reconstruction, superpixels, &options.limits.patches);
     let start = local_start(options, &patches, city);
     if let Some(obstacle) = obstacle::find(city, reconstruction, &patches, &start, &options.limits) {
         return report::refused(&obstacle, city, &patches, options);
@@ -70,7 +70,8 @@ pub fn align(
     let given_scale = options.fixed_scale.and_then(|_| task.scale_of_data(&refiner, &view.candidates));
     let holding = evidence::gather(&refiner, &view.candidates, given_scale);
     let ruling = judge(&holding.evidence, &options.limits.verdict);
-    report::tell(ruling, holding, &view.hypotheses, &patches, city, options)
+    let up_elsewhere = up_elsewhere(&ruling, &patches, &start, options);
+    report::tell(ruling, holding, &view.hypotheses, &patches, up_elsewhere, city, options)
 }
 
 /// The start in the city's local frame. A scale that is given takes the place of the start's, about the cloud's middle.
@@ -103,7 +104,7 @@ struct View<'a> {
 impl<'a> Task<'a> {
     /// Searches under every up that there may be; the view with the best candidate, joined by the candidates of the others.
     fn best_view(&self, motion: Motion) -> View<'a> {
-        let uprights = uprights(self.patches, self.start, self.options.up);
+        let uprights = uprights(self.patches, self.start, self.options.up, &self.options.limits);
         let mut views: Vec<View> = uprights.iter().map(|upright| self.view(upright, motion)).collect();
         let balance = |view: &View| view.candidates.first().map_or(f64::NEG_INFINITY, Candidate::balance);
         let at = (0..views.len()).max_by(|&a, &b| balance(&views[a]).total_cmp(&balance(&views[b])).then(b.cmp(&a)));
@@ -142,11 +143,10 @@ impl<'a> Task<'a> {
 }
 
 /// The ways of taking up that are searched.
-fn uprights(patches: &Patches, start: &Start, up: Up) -> Vec<Upright> {
-    let up_of_start = start.city_from_sfm().rotation.inverse() * Vector3::z();
-    let guess = Upright { up: up_of_start, sigma_rad: start.sigmas().tilt_rad, known: false };
+fn uprights(patches: &Patches, start: &Start, up: Up, limits: &Limits) -> Vec<Upright> {
+    let guess = up_of(start);
     match up {
-        Up::Auto => match choose_up(patches, &guess) {
+        Up::Auto => match choose_up(patches, &guess, limits) {
             UpChoice::Known(all) => all,
             UpChoice::Free(up) => vec![up],
         },
@@ -155,4 +155,15 @@ fn uprights(patches: &Patches, start: &Start, up: Up) -> Vec<Upright> {
             vec![Upright { up: up.try_normalize(0.0).unwrap_or(guess.up), sigma_rad: 0.0, known: true }]
         }
     }
+}
+
+/// The up that walls and cameras see, where nothing was found and it lies beyond the start's reach.
+fn up_elsewhere(ruling: &Ruling, patches: &Patches, start: &Start, options: &AlignOptions) -> Option<UpCandidate> {
+    let failed = ruling.verdict == Verdict::Failed && options.up == Up::Auto;
+    failed.then(|| up_beyond_start(patches, &up_of(start), &options.limits)).flatten()
+}
+
+fn up_of(start: &Start) -> Upright {
+    let up = start.city_from_sfm().rotation.inverse() * Vector3::z();
+    Upright { up, sigma_rad: start.sigmas().tilt_rad, known: false }
 }

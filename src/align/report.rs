@@ -5,7 +5,7 @@ use super::evidence::Gathered;
 use super::obstacle::Obstacle;
 use crate::correspondence::{Hypotheses, NO_SOLVER, ProbeOnPlane};
 use crate::geometry::Point3;
-use crate::planes::{Patches, PreparedCity};
+use crate::planes::{Patches, PreparedCity, UpCandidate};
 use crate::verdict::{Alignment, PlaneEvidence, Ruling, SearchSummary, Support, Verdict, freedoms};
 
 /// The alignment that a ruling makes of what was found.
@@ -14,6 +14,7 @@ pub(super) fn tell(
     found: Gathered,
     hypotheses: &Hypotheses,
     patches: &Patches,
+    up_elsewhere: Option<UpCandidate>,
     city: &PreparedCity,
     options: &AlignOptions,
 ) -> Alignment {
@@ -21,7 +22,7 @@ pub(super) fn tell(
     let (rivals, hold) = (&evidence.rivals, &evidence.hold);
     Alignment {
         verdict: ruling.verdict,
-        reason: ruling.reason,
+        reason: ruling.reason + &up_elsewhere.map_or(String::new(), words_of_up),
         best: rivals.first().map(|r| r.city_from_sfm),
         alternatives: ruling.alternatives,
         origin: city.model.origin,
@@ -62,6 +63,13 @@ pub(super) fn refused(
         search: SearchSummary { solver: NO_SOLVER.to_owned(), samples: 0, seed: options.seed },
         warnings: warnings(patches),
     }
+}
+
+fn words_of_up(up: UpCandidate) -> String {
+    format!(
+        "; walls and cameras see up {:.0} sigmas of the start's tilt away from the start's up: give a larger tilt_sigma_deg, or --up",
+        up.off_start
+    )
 }
 
 fn support(rows: &[ProbeOnPlane], firm: usize) -> Support {

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector4};
 use super::prior::Prior;
 use super::targets::Target;
 use crate::geometry::{Plane, Point3, Vector3};
-use crate::limits::SearchLimits;
+use crate::limits::Limits;
 use crate::robust::Random;
 use crate::solvers::Row;
 
@@ -24,10 +24,10 @@ pub(super) struct RowErrors {
     learned_m: f64,
     /// Of the cloud.
     radius_m: f64,
+    /// How far a belief is believed.
+    reach_sigmas: f64,
 }
 
-/// Pairs beyond this many sigmas are not offered: as far as anything known beforehand is believed.
-const REACH_SIGMAS: f64 = 3.0;
 /// An open direction that is all scale and hardly any translation cannot be written as a plane.
 const SMALLEST_ACROSS: f64 = 1e-3;
 
@@ -55,17 +55,20 @@ impl Expectation<'_> {
         let residual = row.dot(&self.belief.mean) + target.plane.offset;
         let variance = row.dot(&(self.belief.covariance * row)) + self.row_variance;
         let miss_sq = residual * residual / variance;
-        (miss_sq <= REACH_SIGMAS * REACH_SIGMAS).then(|| target.weight * (-0.5 * miss_sq).exp())
+        (miss_sq <= self.belief.errors.reach_sigmas.powi(2)).then(|| target.weight * (-0.5 * miss_sq).exp())
     }
 }
 
 impl RowErrors {
-    pub fn new(limits: &SearchLimits, radius_m: f64) -> RowErrors {
+    pub fn new(limits: &Limits, radius_m: f64) -> RowErrors {
+        let reach_sigmas = limits.reach_sigmas;
+        let limits = &limits.search;
         RowErrors {
             sigma_m: limits.row_sigma_m,
             sigma_per_m: limits.row_sigma_per_m,
             learned_m: limits.learned_m,
             radius_m,
+            reach_sigmas,
         }
     }
 }
@@ -125,7 +128,7 @@ impl Belief {
             let spread = self.covariance[(0, 0)] * arm[k] * arm[k]
                 + 2.0 * self.covariance[(0, k + 1)] * arm[k]
                 + self.covariance[(k + 1, k + 1)];
-            REACH_SIGMAS * (spread.max(0.0) + spun[k] * spun[k] + row_variance).sqrt()
+            self.errors.reach_sigmas * (spread.max(0.0) + spun[k] * spun[k] + row_variance).sqrt()
         };
         let slack = Vector3::new(slack(0), slack(1), slack(2));
         let expected = arm * self.mean[0] + self.mean.fixed_rows::<3>(1);
@@ -147,12 +150,12 @@ impl Belief {
             let sigma_m = eigen.eigenvalues[*k].max(0.0).sqrt();
             // Back to (scale, metres): v . (scale, translation) is the length that the eigenvector stands for.
             let v = eigen.eigenvectors.column(*k).component_mul(&metres);
-            let value = v.dot(&self.mean) + sigma_m * REACH_SIGMAS * (2.0 * random.unit() - 1.0);
+            let value = v.dot(&self.mean) + sigma_m * self.errors.reach_sigmas * (2.0 * random.unit() - 1.0);
             // v . (scale, translation) = value is the row of a point p with n . R p = v[0] / |n| on the plane across n.
             let across = v.fixed_rows::<3>(1).into_owned();
             let length = across.norm();
             let normal = across.try_normalize(SMALLEST_ACROSS)?;
-            chance *= (self.errors.learned_m / (REACH_SIGMAS * sigma_m)).min(1.0);
+            chance *= (self.errors.learned_m / (self.errors.reach_sigmas * sigma_m)).min(1.0);
             Some(Row { point: self.unturn(&normal) * (v[0] / length), normal, offset: -value / length })
         };
         let rows: Option<Vec<Row>> = order[..missing.min(4)].iter().map(&mut row).collect();
@@ -185,14 +188,13 @@ impl Belief {
 mod tests {
     use super::*;
     use crate::geometry::{Similarity, Start};
-    use crate::limits::Limits;
     use crate::planes::PlaneId;
     use crate::robust::Motion;
 
     fn belief(motion: Motion) -> Belief {
         let (start, limits) = (Start::with_default_sigmas(Similarity::identity()), Limits::default());
         let prior = Prior::new(&start, Point3::origin(), motion, false, None, &limits);
-        Belief::new(&prior, Matrix3::identity(), RowErrors::new(&limits.search, 40.0))
+        Belief::new(&prior, Matrix3::identity(), RowErrors::new(&limits, 40.0))
     }
 
     fn wall(low: f64, offset: f64) -> Target {
@@ -215,7 +217,10 @@ mod tests {
         // The wall stands 45 m higher: out of reach, but for a spin of some sigmas about the wall's own normal.
         assert!(belief.expect(&place).likelihood(&wall(0.0, -5.0)).is_some());
         assert!(belief.expect(&place).likelihood(&wall(45.0, -5.0)).is_none());
-        assert_eq!(spinning.expect(&place).likelihood(&wall(45.0, -5.0)), belief.expect(&place).likelihood(&wall(0.0, -5.0)));
+        assert_eq!(
+            spinning.expect(&place).likelihood(&wall(45.0, -5.0)),
+            belief.expect(&place).likelihood(&wall(0.0, -5.0))
+        );
         assert!(spinning.expect(&place).likelihood(&wall(45.0, -80.0)).is_none());
     }
 

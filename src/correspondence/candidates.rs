@@ -12,6 +12,7 @@ use super::scene::Scene;
 use super::search::{Hypotheses, largest_shift};
 use super::walk::{hop, slide};
 use crate::geometry::Similarity;
+use crate::limits::StageLimits;
 
 /// A pose that survived to the end.
 #[derive(Clone, Debug)]
@@ -36,39 +37,17 @@ impl Candidate {
     }
 }
 
-/// A round of improvement.
-struct Stage {
-    /// Probes that refine and rank.
-    panel: Vec<u32>,
-    /// Gates of refinement and of ranking, in units of the scene.
-    gates: &'static [f64],
-    ranking_gate: f64,
-    /// Whether lines of sight count.
-    sight: bool,
-    /// Whether better poses in the basins beside join first.
-    basins: bool,
-    /// Poses that go on.
-    keep: usize,
-}
-
-/// Probes whose lines of sight are traced.
-const SIGHT_PANEL: usize = 500;
-/// Probes that say which of two basins explains more.
-const BASIN_PANEL: usize = 1500;
-/// Voters of a ranking; a larger panel changes the third digit.
-const MOST_VOTERS: usize = 3000;
-
 /// The distinct poses that hypotheses lead to, best first.
 pub fn candidates(refiner: &Refiner, hypotheses: &Hypotheses) -> Vec<Candidate> {
     let scene = refiner.scene;
     let unranked =
         |ranked: &crate::robust::Ranked<Similarity>| Candidate { hits: ranked.hits, ..unjudged(refiner, &ranked.pose) };
     let mut candidates: Vec<Candidate> = hypotheses.ranked.iter().map(unranked).collect();
-    for stage in stages(scene) {
+    for stage in &scene.limits.refinement.stages {
         if stage.basins {
             candidates.extend(beside(refiner, &candidates));
         }
-        candidates = candidates.par_iter().map(|c| improved(refiner, &stage, c)).collect();
+        candidates = candidates.par_iter().map(|c| improved(refiner, stage, c)).collect();
         candidates.retain(|c| scene.prior.reaches(&c.refined.city_from_level));
         candidates = distinct(candidates, scene, stage.keep);
     }
@@ -78,8 +57,8 @@ pub fn candidates(refiner: &Refiner, hypotheses: &Hypotheses) -> Vec<Candidate> 
 
 /// A pose as a candidate of the last stage, not moved.
 pub fn candidate_at(refiner: &Refiner, pose: &Similarity) -> Candidate {
-    let [.., last] = stages(refiner.scene);
-    judged(refiner.scene, &last, unjudged(refiner, pose))
+    let [.., last] = &refiner.scene.limits.refinement.stages;
+    judged(refiner.scene, last, unjudged(refiner, pose))
 }
 
 /// Candidates of one view of a cloud, joined by those of another view (up taken otherwise): each of these with the map between the level
@@ -93,7 +72,7 @@ pub fn joined(refiner: &Refiner, own: Vec<Candidate>, others: &[(Similarity, Can
         Candidate { refined: settled(refiner, &pose), hits: other.hits, ..candidate_at(refiner, &pose) }
     };
     let all = own.into_iter().chain(others.iter().map(seen_here)).collect();
-    let [.., last] = stages(scene);
+    let [.., last] = &scene.limits.refinement.stages;
     compared_with_the_best(distinct(all, scene, last.keep), scene)
 }
 
@@ -114,43 +93,13 @@ fn compared_with_the_best(mut candidates: Vec<Candidate>, scene: &Scene) -> Vec<
     candidates
 }
 
-fn stages(scene: &Scene) -> [Stage; 3] {
-    let votes = &scene.votes;
-    [
-        Stage {
-            panel: votes.panel(400),
-            gates: &[5.0, 5.0, 4.0, 3.3, 2.7],
-            ranking_gate: 2.3,
-            sight: false,
-            basins: false,
-            keep: 16,
-        },
-        Stage {
-            panel: votes.panel(1500),
-            gates: &[2.7, 2.3, 2.0, 1.7, 1.7],
-            ranking_gate: 1.3,
-            sight: true,
-            basins: false,
-            keep: 6,
-        },
-        Stage {
-            panel: probes(votes.firm),
-            gates: &[1.7, 1.3, 1.0, 1.0],
-            ranking_gate: 1.0,
-            sight: true,
-            basins: true,
-            keep: 6,
-        },
-    ]
-}
-
 fn probes(count: usize) -> Vec<u32> {
     (0..count as u32).collect()
 }
 
 /// Better poses in basins beside those of the candidates, which stay: one that is far enough off remains a rival.
 fn beside(refiner: &Refiner, candidates: &[Candidate]) -> Vec<Candidate> {
-    let panel = refiner.scene.votes.panel(BASIN_PANEL);
+    let panel = refiner.scene.votes.panel(refiner.scene.limits.walk.basin_probes);
     candidates.par_iter().map(|c| unjudged(refiner, &hop(refiner, &panel, &c.refined.city_from_level))).collect()
 }
 
@@ -159,32 +108,38 @@ fn unjudged(refiner: &Refiner, pose: &Similarity) -> Candidate {
     Candidate { refined, share: 0.0, blocked: 0.0, prior_cost: 0.0, hits: 0, lead_sigmas: 0.0 }
 }
 
-fn improved(refiner: &Refiner, stage: &Stage, candidate: &Candidate) -> Candidate {
+fn improved(refiner: &Refiner, stage: &StageLimits, candidate: &Candidate) -> Candidate {
     let scene = refiner.scene;
-    let gates_m: Vec<f64> = stage.gates.iter().map(|g| g * scene.unit_m).collect();
-    let first = refiner.refine(&stage.panel, &candidate.refined.city_from_level, &gates_m);
+    let panel = panel(scene, stage);
+    let gates_m: Vec<f64> = stage.gates_units.iter().map(|g| g * scene.unit_m).collect();
+    let first = refiner.refine(&panel, &candidate.refined.city_from_level, &gates_m);
     let spectrum = first.chart.spectrum(&first.equations.full());
-    let (voters, gate_m) = (voters(scene, stage), stage.ranking_gate * scene.unit_m);
+    let (voters, gate_m) = (voters(scene, stage), stage.ranking_gate_units * scene.unit_m);
     let slid = slide(scene, &voters, &first.chart, &spectrum, &first.city_from_level, gate_m);
-    let refined = if slid == first.city_from_level { first } else { refiner.refine(&stage.panel, &slid, &gates_m) };
+    let refined = if slid == first.city_from_level { first } else { refiner.refine(&panel, &slid, &gates_m) };
     judged(scene, stage, Candidate { refined, ..candidate.clone() })
 }
 
 /// What speaks for and against the pose of a candidate, by the panel of a stage.
-fn judged(scene: &Scene, stage: &Stage, candidate: Candidate) -> Candidate {
+fn judged(scene: &Scene, stage: &StageLimits, candidate: Candidate) -> Candidate {
     let pose = candidate.refined.city_from_level;
     let blocked = if stage.sight { blocked_share(scene, &pose) } else { 0.0 };
-    let share = scene.panel_share(&voters(scene, stage), &pose, stage.ranking_gate * scene.unit_m);
+    let share = scene.panel_share(&voters(scene, stage), &pose, stage.ranking_gate_units * scene.unit_m);
     Candidate { share, blocked, prior_cost: scene.prior.cost(&pose), ..candidate }
 }
 
+/// The probes that refine.
+fn panel(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
+    if stage.probes < scene.votes.firm { scene.votes.panel(stage.probes) } else { probes(scene.votes.firm) }
+}
+
 /// Loose points have no vote.
-fn voters(scene: &Scene, stage: &Stage) -> Vec<u32> {
-    scene.votes.panel(stage.panel.len().min(MOST_VOTERS))
+fn voters(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
+    scene.votes.panel(stage.probes.min(scene.votes.firm).min(scene.limits.refinement.most_voters))
 }
 
 fn blocked_share(scene: &Scene, pose: &Similarity) -> f64 {
-    let blocked = scene.blocked(&scene.votes.panel(SIGHT_PANEL), pose);
+    let blocked = scene.blocked(&scene.votes.panel(scene.limits.refinement.sight_probes), pose);
     blocked.iter().filter(|b| **b).count() as f64 / blocked.len().max(1) as f64
 }
 

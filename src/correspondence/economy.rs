@@ -12,6 +12,7 @@
 //! Source       number of trials: Fischler and Bolles 1981; Ramalingam et al. (ECCV 2010), section 5, weigh 3 planes against 6 so
 
 use super::search::PoseSearch;
+use crate::limits::SearchLimits;
 use crate::robust::Random;
 use crate::solvers::Configuration;
 
@@ -35,14 +36,10 @@ const PILOT_DRAWS: u64 = 8192;
 /// Seed of the pilot: its own, so that the choice does not hang on the user's.
 const PILOT_SEED: u64 = 0;
 
-/// Time to draw one pair (2 to 10 us, by the city) and to score one pose on the ranking panel (10 to 40 us): one core of a shared EPYC,
-/// 2026-11-25. Ratios matter.
-const PAIR_US: f64 = 5.0;
-const SCORE_US: f64 = 20.0;
 /// What a pilot tells of each search.
-pub fn prospects(searches: &[PoseSearch], on_city: f64) -> Vec<Prospect> {
+pub fn prospects(searches: &[PoseSearch], limits: &SearchLimits) -> Vec<Prospect> {
     let draws = searches.first().map_or(0, draws_of_pilot);
-    searches.iter().map(|search| Prospect::of(search, draws, on_city)).collect()
+    searches.iter().map(|search| Prospect::of(search, draws, limits.on_city)).collect()
 }
 
 fn draws_of_pilot(search: &PoseSearch) -> u64 {
@@ -80,22 +77,24 @@ impl Prospect {
     }
 
     /// Expected time until a sample is right, microseconds; `None` where the data feed none.
-    pub fn expected_us(&self) -> Option<f64> {
+    pub fn expected_us(&self, limits: &SearchLimits) -> Option<f64> {
         let planes = self.configuration.points_per_plane.len();
-        let cost = planes as f64 * PAIR_US + self.fed * self.configuration.solve_us + self.poses * SCORE_US;
+        let cost =
+            planes as f64 * limits.pair_us + self.fed * self.configuration.solve_us + self.poses * limits.score_us;
         (self.chance > 0.0).then(|| cost / self.chance)
     }
 }
 
 /// The configuration whose right sample is expected to cost least.
-pub fn cheapest(prospects: &[Prospect]) -> Option<Configuration> {
-    let costs = prospects.iter().filter_map(|p| Some((p.expected_us()?, p.configuration)));
+pub fn cheapest(prospects: &[Prospect], limits: &SearchLimits) -> Option<Configuration> {
+    let costs = prospects.iter().filter_map(|p| Some((p.expected_us(limits)?, p.configuration)));
     costs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, configuration)| configuration)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits::Limits;
     use crate::solvers::SIMILARITY;
 
     /// (3,2,1,1), (3,1,1,1,1), (2,2,2,1) of a similarity, fed and right alike.
@@ -104,7 +103,7 @@ mod tests {
     }
 
     fn chosen(prospects: &[Prospect]) -> String {
-        cheapest(prospects).map_or(String::new(), |configuration| configuration.to_string())
+        cheapest(prospects, &Limits::default().search).map_or(String::new(), |configuration| configuration.to_string())
     }
 
     #[test]
@@ -137,7 +136,8 @@ mod tests {
     #[test]
     fn the_expected_cost_is_that_of_a_trial_over_the_chance_of_success() {
         let [four, ..] = prospects();
-        let trial = 4.0 * PAIR_US + 0.5 * SIMILARITY[0].solve_us + 0.2 * SCORE_US;
-        assert!((four.expected_us().unwrap() - trial / 0.01).abs() < 1e-9);
+        let limits = Limits::default().search;
+        let trial = 4.0 * limits.pair_us + 0.5 * SIMILARITY[0].solve_us + 0.2 * limits.score_us;
+        assert!((four.expected_us(&limits).unwrap() - trial / 0.01).abs() < 1e-9);
     }
 }

@@ -13,16 +13,12 @@
 use super::scene::Scene;
 use crate::geometry::Similarity;
 
-/// Probes that vote; enough that every patch that weighs anything has its say.
-const PANEL: usize = 1000;
-/// Gate of a vote, units of the scene: that of the last ranking.
-const GATE_UNITS: f64 = 1.0;
-
 /// The net vote of each patch for a pose, shares of the whole vote: positive where its points lie on the city, negative where the
 /// city would stand between them and their cameras.
 pub(super) fn ballot(scene: &Scene, pose: &Similarity) -> Vec<f64> {
-    let panel = scene.votes.panel(PANEL);
-    let explained = scene.panel_votes(&panel, pose, GATE_UNITS * scene.unit_m);
+    let panel = scene.votes.panel(scene.limits.refinement.lead_probes);
+    // The gate is that of the last ranking.
+    let explained = scene.panel_votes(&panel, pose, scene.unit_m);
     let blocked = scene.blocked(&panel, pose);
     let mut by_patch = vec![0.0; scene.votes.patches.len()];
     for (i, (vote, is_blocked)) in panel.iter().zip(explained.into_iter().zip(blocked)) {

@@ -83,7 +83,7 @@ impl<'a> Sampler<'a> {
             votes,
             prior,
             limits,
-            errors: RowErrors::new(limits, votes.radius_m),
+            errors: RowErrors::new(scene.limits, votes.radius_m),
             targets: Targets::new(scene.city.planes(), &in_sight, limits.smallest_target_m2),
             all: rising(|_| true),
             turned: rising(|p| has_azimuth(&p.normal)),

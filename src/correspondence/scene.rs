@@ -25,9 +25,6 @@ pub struct Scene<'a> {
     pub unit_m: f64,
 }
 
-/// The widest gate at which most of the refinement is done, units.
-const REFINING_GATE_UNITS: f64 = 1.7;
-
 impl<'a> Scene<'a> {
     /// `start` maps to the city's local frame; with a rigid motion its scale is the given one.
     pub fn new(
@@ -43,7 +40,7 @@ impl<'a> Scene<'a> {
         let unit_m = limits.model_unit_m + limits.noise_sigmas * votes.noise_m;
         // A pose may be as much larger than the start as the scale allows, and its gates with it.
         let grid = |gate_units: f64| city.grid(gate_units * unit_m * prior.most_scale());
-        let (narrow_grid, wide_grid) = (grid(REFINING_GATE_UNITS), grid(limits.search.gate_units));
+        let (narrow_grid, wide_grid) = (grid(limits.walk.basin_gates_units[0]), grid(limits.search.gate_units));
         let reach = prior.reach(&votes.extent());
         Scene { city, limits, votes, prior, reach, narrow_grid, wide_grid, unit_m }
     }

@@ -27,7 +27,7 @@ pub fn search(scene: &Scene, seed: u64, progress: &(dyn Fn(usize, usize) + Sync)
     let (sampler, sought, panel) = (Sampler::new(scene), sought(scene), scene.votes.panel(limits.ranking_probes));
     let with = |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, panel: &panel };
     let searches: Vec<PoseSearch> = sought.configurations().iter().map(with).collect();
-    let Some(configuration) = cheapest(&prospects(&searches, limits.on_city)) else {
+    let Some(configuration) = cheapest(&prospects(&searches, limits), limits) else {
         return Hypotheses { ranked: Vec::new(), solver: NO_SOLVER.to_owned(), samples: 0 };
     };
     let options = RansacOptions {

@@ -78,14 +78,11 @@ pub fn slide(
     walked.1
 }
 
-/// Gates of refinement after a move into a neighbouring basin, units of the scene: as wide as a move, then as a vote.
-const BASIN_GATES_UNITS: [f64; 4] = [1.7, 1.3, 1.0, 1.0];
-
 /// The best pose about `pose` in its own basin and those beside it, by the score of `panel`.
 pub fn hop(refiner: &Refiner, panel: &[u32], pose: &Similarity) -> Similarity {
     let scene = refiner.scene;
     let (limits, unit_m) = (&scene.limits.walk, scene.unit_m);
-    let gates_m = BASIN_GATES_UNITS.map(|g| g * unit_m);
+    let gates_m = limits.basin_gates_units.map(|g| g * unit_m);
     let refined = |pose: &Similarity| {
         let refined = refiner.refine(panel, pose, &gates_m);
         ((scene.score(panel, &refined.city_from_level, unit_m), refined.city_from_level), refined)

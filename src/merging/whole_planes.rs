@@ -18,7 +18,8 @@ use super::Part;
 use super::plane_evidence::{PlaneEvidence, PlaneGroup, PlaneOf, PointOnPlane, group};
 use super::sigma::{covariance, extent, median};
 use crate::geometry::{Point3, Similarity, Vector3};
-use crate::planes::{PatchOptions, patches};
+use crate::limits::{Limits, PatchLimits};
+use crate::planes::patches;
 
 /// Points that tell all that there is to say, since those of one plane share its error.
 const MOST_POINTS: usize = 10_000;
@@ -55,8 +56,8 @@ pub(super) fn whole_planes(a: &Part, b: &Part, a_from_b: &Similarity, bend: f64)
 
 impl Surfaces {
     fn of(part: &Part) -> Option<Surfaces> {
-        let options = PatchOptions { most_points: MOST_POINTS, ..PatchOptions::default() };
-        let found = patches(&part.sfm, part.superpixels.as_ref(), &options);
+        let limits = PatchLimits { most_points: MOST_POINTS, ..Limits::default().patches };
+        let found = patches(&part.sfm, part.superpixels.as_ref(), &limits);
         let (_, radius) = extent(&part.sfm.points);
         let (mut points, mut patch_of, mut normals, mut eyes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (index, patch) in found.patches.iter().enumerate() {

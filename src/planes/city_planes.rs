@@ -96,13 +96,21 @@ impl<'a> Merger<'a> {
 
     /// The oldest (hence largest) plane that the facet lies in.
     fn matching(&self, id: FacetId, key: [i32; 4]) -> Option<PlaneId> {
+        let normal = &self.city.facets[id.0 as usize].plane.normal;
+        // Normals within the tolerance differ by no more than its chord in each component.
+        let chord = NORMAL_TOLERANCE_DEG.to_radians();
+        let steps = |k: usize| {
+            let step = |c: f64| (c / NORMAL_STEP).round() as i32;
+            step(normal[k] - chord)..=step(normal[k] + chord)
+        };
         let mut best: Option<PlaneId> = None;
-        for code in 0..81 {
-            let step = |place: i32| code / place % 3 - 1;
-            let near = [key[0] + step(1), key[1] + step(3), key[2] + step(9), key[3] + step(27)];
-            let Some(planes) = self.buckets.get(&near) else { continue };
-            let found = planes.iter().copied().filter(|&p| best.is_none_or(|b| p < b)).find(|&p| self.lies_in(id, p));
-            best = found.or(best);
+        for (x, y, z) in steps(0).flat_map(|x| steps(1).flat_map(move |y| steps(2).map(move |z| (x, y, z)))) {
+            for offset in key[3] - 1..=key[3] + 1 {
+                let Some(planes) = self.buckets.get(&[x, y, z, offset]) else { continue };
+                let found =
+                    planes.iter().copied().filter(|&p| best.is_none_or(|b| p < b)).find(|&p| self.lies_in(id, p));
+                best = found.or(best);
+            }
         }
         best
     }

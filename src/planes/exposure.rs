@@ -10,34 +10,29 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::prepared_city::PreparedCity;
 use crate::geometry::{Point3, Vector3};
-
-/// Lines of sight start this far off the facet, beyond the mortar between the walls of two houses.
-const START_M: f64 = 0.06;
-/// What is nearer than this in front of a facet hides it: nobody stands there.
-const NARROWEST_GAP_M: f64 = 0.5;
-/// Lines of sight that meet nothing within this distance end in the open.
-const REACH_M: f64 = 40.0;
-/// Larger triangles are looked at from three places.
-const LARGE_TRIANGLE_M2: f64 = 4.0;
+use crate::limits::ExposureLimits;
 
 /// For each triangle of a city whether it is exposed, found out when first asked.
-pub(super) struct Exposure(Vec<AtomicU8>);
+pub(super) struct Exposure {
+    known: Vec<AtomicU8>,
+    limits: ExposureLimits,
+}
 
 const UNKNOWN: u8 = 0;
 const HIDDEN: u8 = 1;
 const EXPOSED: u8 = 2;
 
 impl Exposure {
-    pub fn new(triangles: usize) -> Exposure {
-        Exposure((0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect())
+    pub fn new(triangles: usize, limits: &ExposureLimits) -> Exposure {
+        Exposure { known: (0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect(), limits: *limits }
     }
 
     /// Two threads that ask at once find the same.
     pub fn of(&self, triangle: u32, city: &PreparedCity) -> bool {
-        let known = &self.0[triangle as usize];
+        let known = &self.known[triangle as usize];
         match known.load(Ordering::Relaxed) {
             UNKNOWN => {
-                let exposed = is_exposed(triangle, city);
+                let exposed = is_exposed(triangle, city, &self.limits);
                 known.store(if exposed { EXPOSED } else { HIDDEN }, Ordering::Relaxed);
                 exposed
             }
@@ -46,17 +41,17 @@ impl Exposure {
     }
 }
 
-fn is_exposed(triangle: u32, city: &PreparedCity) -> bool {
+fn is_exposed(triangle: u32, city: &PreparedCity, limits: &ExposureLimits) -> bool {
     let normal = |t: u32| city.model.facets[city.facet_of(t).0 as usize].plane.normal;
     let ends_in_the_open =
-        |from: &Point3<f64>, direction: &Vector3<f64>| match city.rays().first_hit(from, direction, REACH_M) {
+        |from: &Point3<f64>, direction: &Vector3<f64>| match city.rays().first_hit(from, direction, limits.open_m) {
             None => true,
-            Some(sight) => sight.distance > NARROWEST_GAP_M && normal(sight.triangle).dot(direction) < 0.0,
+            Some(sight) => sight.distance > limits.narrowest_gap_m && normal(sight.triangle).dot(direction) < 0.0,
         };
     let outward = normal(triangle);
     let directions = fan(&outward);
-    places(&city.corners(triangle)).iter().any(|place| {
-        let from = place + START_M * outward;
+    places(&city.corners(triangle), limits.large_triangle_m2).iter().any(|place| {
+        let from = place + limits.start_m * outward;
         most(directions.iter().map(|d| ends_in_the_open(&from, d)), directions.len())
     })
 }
@@ -87,9 +82,9 @@ fn fan(normal: &Vector3<f64>) -> [Vector3<f64>; 5] {
 }
 
 /// Places on a triangle to look from: its middle, or three well inside a large one.
-fn places([a, b, c]: &[Point3<f64>; 3]) -> Vec<Point3<f64>> {
+fn places([a, b, c]: &[Point3<f64>; 3], large_m2: f64) -> Vec<Point3<f64>> {
     let at = |u: f64, v: f64, w: f64| Point3::from(a.coords * u + b.coords * v + c.coords * w);
-    if (b - a).cross(&(c - a)).norm() / 2.0 < LARGE_TRIANGLE_M2 {
+    if (b - a).cross(&(c - a)).norm() / 2.0 < large_m2 {
         vec![at(1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0)]
     } else {
         vec![at(0.7, 0.15, 0.15), at(0.15, 0.7, 0.15), at(0.15, 0.15, 0.7)]

@@ -14,6 +14,6 @@ pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
 pub use cloud::{LocalSurface, local_surfaces};
 pub use facet_grid::{FacetGrid, Hit, Probe};
 pub use fit::{FittedPlane, fit_plane, fit_plane_robustly};
-pub use patches::{Patch, PatchOptions, Patches, RejectedGroup, patches};
+pub use patches::{Patch, Patches, RejectedGroup, patches};
 pub use prepared_city::PreparedCity;
 pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start, up_candidates};

@@ -21,6 +21,7 @@ use super::cloud::{LocalSurface, NEIGHBOURS, local_surfaces};
 use super::fit::{FittedPlane, fit_plane, fit_plane_robustly};
 use crate::geometry::{Point3, Rotation3, Vector3};
 use crate::imagery::LiftedSuperpixels;
+use crate::limits::PatchLimits;
 use crate::reconstruction::{PointIndex, Reconstruction};
 
 /// Points of one plane, seen from one side.
@@ -81,45 +82,17 @@ impl Patches {
     }
 }
 
-/// How patches are made.
-#[derive(Clone, Copy, Debug)]
-pub struct PatchOptions {
-    /// A larger cloud is thinned evenly to about this many points: more do not make a pose better, since the model's own error
-    /// is shared by all points of a plane.
-    pub most_points: usize,
-    /// A plane is fixed by three points; fewer than this many say nothing about whether they lie in one.
-    pub fewest_points: usize,
-}
-
-impl Default for PatchOptions {
-    fn default() -> Self {
-        PatchOptions { most_points: 40_000, fewest_points: 8 }
-    }
-}
-
-/// Fewest points of a superpixel that get a plane of their own: three define it, three more can contradict.
-const FEWEST_IN_SUPERPIXEL: usize = 6;
-/// A superpixel has a plane when at least this share of its points lies in it.
-const PLANAR_SHARE: f64 = 0.6;
-/// Points belong to a plane within this many sigmas of its noise.
-const GATE_SIGMAS: f64 = 2.5;
-/// Normals of neighbours in one region differ by no more than this: local planes of 14 points are good to some 4 degrees,
-/// edges of buildings turn by 20 and more.
-const SAME_NORMAL_DEG: f64 = 20.0;
-/// A local plane rougher than this starts no region.
-const SEED_ROUGHNESS: f64 = 0.35;
-
 /// Finds the patches of a reconstruction.
-pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, options: &PatchOptions) -> Patches {
+pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, limits: &PatchLimits) -> Patches {
     let places = Places::of(&r.points);
-    let support = thinned(&r.points, &places.firsts, options.most_points);
+    let support = thinned(&r.points, &places.firsts, limits.most_points);
     let points: Vec<Point3<f64>> = support.iter().map(|p| r.points[p.0 as usize]).collect();
     let slots = places.slots(&support);
     let (surfaces, neighbours) = local_surfaces(&points);
-    let noise = median(surfaces.iter().flatten().filter(|s| s.roughness < SEED_ROUGHNESS).map(|s| s.rms));
+    let noise = median(surfaces.iter().flatten().filter(|s| s.roughness < limits.seed_roughness).map(|s| s.rms));
     let repeated = r.points.len() - places.firsts.len();
     let mut found = Patches { support, points, noise, repeated, ..Patches::default() };
-    let mut grower = Grower::new(&found.points, surfaces, neighbours, noise);
+    let mut grower = Grower::new(&found.points, surfaces, neighbours, noise, limits);
     if let Some(lifted) = superpixels {
         for group in groups_in_support(lifted, &slots) {
             match grower.add_superpixel(group) {
@@ -129,7 +102,7 @@ pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, opti
             }
         }
     }
-    let regions = grower.grow(options.fewest_points);
+    let regions = grower.grow(limits.fewest_points);
     found.cameras = r.images.iter().map(|image| image.center()).collect();
     found.cam_from_sfm_rotations = r.images.iter().map(|image| image.cam_from_sfm_rotation).collect();
     found.views = outward_hints(r, &slots, &found);
@@ -280,26 +253,33 @@ struct Grower<'a> {
     superpixels: Vec<Vec<u32>>,
     memberships: Vec<Vec<u32>>,
     noise: f64,
+    limits: &'a PatchLimits,
 }
 
 impl<'a> Grower<'a> {
-    fn new(points: &'a [Point3<f64>], surfaces: Vec<Option<LocalSurface>>, neighbours: Vec<u32>, noise: f64) -> Self {
+    fn new(
+        points: &'a [Point3<f64>],
+        surfaces: Vec<Option<LocalSurface>>,
+        neighbours: Vec<u32>,
+        noise: f64,
+        limits: &'a PatchLimits,
+    ) -> Self {
         let count = points.len();
         let memberships = vec![Vec::new(); count];
-        Grower { points, surfaces, neighbours, superpixels: Vec::new(), memberships, noise }
+        Grower { points, surfaces, neighbours, superpixels: Vec::new(), memberships, noise, limits }
     }
 
     /// Fits a plane to a superpixel's points and gives its normal to those that lie in it.
     fn add_superpixel(&mut self, group: Vec<u32>) -> Result<(), RejectedGroup> {
-        if group.len() < FEWEST_IN_SUPERPIXEL {
+        if group.len() < self.limits.fewest_in_superpixel {
             return Err(RejectedGroup::TooFewPoints);
         }
         let points: Vec<Point3<f64>> = group.iter().map(|&i| self.points[i as usize]).collect();
-        let fit = fit_plane_robustly(&points, GATE_SIGMAS * self.noise);
+        let fit = fit_plane_robustly(&points, self.limits.gate_sigmas * self.noise);
         let (fit, inside) = fit.ok_or(RejectedGroup::NotPlanar)?;
-        let planar = inside.len() >= FEWEST_IN_SUPERPIXEL
-            && inside.len() as f64 >= PLANAR_SHARE * group.len() as f64
-            && fit.rms < SEED_ROUGHNESS * fit.spread[1];
+        let planar = inside.len() >= self.limits.fewest_in_superpixel
+            && inside.len() as f64 >= self.limits.planar_share * group.len() as f64
+            && fit.rms < self.limits.seed_roughness * fit.spread[1];
         if !planar {
             return Err(RejectedGroup::NotPlanar);
         }
@@ -320,7 +300,8 @@ impl<'a> Grower<'a> {
     /// All regions of at least `fewest` points, from the flattest seeds on.
     fn grow(&self, fewest: usize) -> Vec<Vec<u32>> {
         let flatness = |i: u32| self.surfaces[i as usize].map_or(f64::INFINITY, |s| s.roughness);
-        let mut seeds: Vec<u32> = (0..self.points.len() as u32).filter(|&i| flatness(i) < SEED_ROUGHNESS).collect();
+        let mut seeds: Vec<u32> =
+            (0..self.points.len() as u32).filter(|&i| flatness(i) < self.limits.seed_roughness).collect();
         seeds.sort_by(|&a, &b| flatness(a).total_cmp(&flatness(b)).then(a.cmp(&b)));
         let mut taken = vec![false; self.points.len()];
         let mut regions = Vec::new();
@@ -343,8 +324,8 @@ impl<'a> Grower<'a> {
         let mut members = Vec::new();
         let Some(surface) = self.surfaces[seed as usize] else { return members };
         let mut region = RegionPlane { center: self.points[seed as usize].coords, normal: surface.normal };
-        let tolerance = GATE_SIGMAS * self.noise;
-        let cos_tolerance = SAME_NORMAL_DEG.to_radians().cos();
+        let tolerance = self.limits.gate_sigmas * self.noise;
+        let cos_tolerance = self.limits.same_normal_deg.to_radians().cos();
         let mut refit_at = 12;
         let mut queue = VecDeque::from([seed]);
         taken[seed as usize] = true;
@@ -396,6 +377,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::imagery::Superpixel;
+    use crate::limits::Limits;
     use crate::reconstruction::{Image, ImageIndex};
     use crate::robust::Random;
 
@@ -415,7 +397,7 @@ mod tests {
     }
 
     fn found(points: Vec<Point3<f64>>) -> Patches {
-        patches(&cloud(points), None, &PatchOptions { most_points: 2000, ..PatchOptions::default() })
+        patches(&cloud(points), None, &PatchLimits { most_points: 2000, ..Limits::default().patches })
     }
 
     fn same(a: &Patches, b: &Patches) -> bool {
@@ -461,7 +443,7 @@ mod tests {
             track_elements: vec![(ImageIndex(2), 0), (ImageIndex(0), 0), (ImageIndex(1), 0)],
             ..Reconstruction::default()
         };
-        let found = patches(&r, None, &PatchOptions::default());
+        let found = patches(&r, None, &Limits::default().patches);
         assert_eq!(found.support, [PointIndex(0), PointIndex(1)]);
         assert_eq!(found.viewers, [[Some(1), Some(0)], [None, None]]);
         assert_eq!(found.views[0], Vector3::new(3.0, 0.0, 0.0));

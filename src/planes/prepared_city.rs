@@ -13,6 +13,7 @@ use super::exposure::Exposure;
 use super::facet_grid::FacetGrid;
 use crate::city::{CityModel, FacetId};
 use crate::geometry::{Point3, RayCaster};
+use crate::limits::{ExposureLimits, Limits};
 
 /// A city model with all that alignments ask of it.
 pub struct PreparedCity {
@@ -29,7 +30,12 @@ pub struct PreparedCity {
 const REACH_RATIO: f64 = 1.19;
 
 impl PreparedCity {
+    /// A city whose exposure is judged as [`Limits::default`] says.
     pub fn new(model: CityModel) -> PreparedCity {
+        PreparedCity::with_limits(model, &Limits::default().exposure)
+    }
+
+    pub fn with_limits(model: CityModel, limits: &ExposureLimits) -> PreparedCity {
         // A model whose facets were taken away by hand may hold triangles of none.
         let of_facets: usize = model.facets.iter().map(|facet| facet.triangles.len()).sum();
         let model = if of_facets == model.triangles.len() { model } else { model.subset(|_| true) };
@@ -38,7 +44,7 @@ impl PreparedCity {
             facet_of_triangle[facet.triangles.start as usize..facet.triangles.end as usize].fill(id);
         }
         PreparedCity {
-            exposure: Exposure::new(model.triangles.len()),
+            exposure: Exposure::new(model.triangles.len(), limits),
             model,
             facet_of_triangle,
             planes: OnceLock::new(),

@@ -10,6 +10,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::patches::{Patch, Patches};
 use crate::geometry::{Matrix3, Rotation3, Vector3};
+use crate::limits::{UpHabits, UpLimits};
 
 /// One kind of voters.
 pub struct UpVotes {
@@ -18,39 +19,14 @@ pub struct UpVotes {
     weights: Vec<f64>,
     /// How many voters of its own direction each has, itself included.
     fellows: Vec<f64>,
-    habits: Habits,
+    habits: UpHabits,
+    limits: UpLimits,
 }
-
-/// How well a kind of voters keeps to up. All chosen. Measured with them: on 173 captures with known up (whole or cut to 3 to 8 photographs
-/// in a row, or clouds without cameras), seven starts each, the errors of up were 0.7 of its sigmas in the median, 2.0 at 95 % and
-/// 3.5 at most; nine pairs of real captures of one place differed by at most 1.9 of theirs.
-struct Habits {
-    /// A voter this far off still votes, with a weight that has fallen to a quarter.
-    kernel_rad: f64,
-    /// The error that voters of one direction share, where they ask for an up across that direction ...
-    shared_across_rad: f64,
-    /// ... and along it.
-    shared_along_rad: f64,
-}
-
-/// Walls are built to a third of a degree; streets, yards and flat roofs fall by a few percent.
-const PATCHES: Habits = Habits { kernel_rad: 0.035, shared_across_rad: 0.005, shared_along_rad: 0.02 };
-/// Hands tilt a camera by a few degrees at random, and by half a degree as a habit.
-const CAMERAS: Habits = Habits { kernel_rad: 0.06, shared_across_rad: 0.01, shared_along_rad: 0.01 };
 
 /// More voters of a kind say nothing new. The heaviest patches, every n-th camera.
 const MOST_VOTERS: usize = 500;
-/// So many votes off by a kernel stand in for what few voters cannot tell of their scatter.
-const VOTES_OF_KERNEL: f64 = 1.0;
 /// Two directions are alike by the cosine to this power: a half at 15 degrees.
 const LIKENESS_POWER: i32 = 20;
-/// Nobody looks up at a building more steeply than this: sine of 50 degrees.
-const STEEPEST_VIEW: f64 = 0.77;
-/// A camera that looks straight down may lean so far (sine) that its y axis points up.
-const UPSIDE_DOWN: f64 = 0.2;
-/// What a photograph counts that was turned by a quarter: fewer are than not. Turned ones alone still outvote what else their
-/// axes would allow, which makes half of them look at the sky.
-const QUARTER_TURNED: f64 = 0.7;
 
 enum Voter {
     Patch {
@@ -69,30 +45,30 @@ enum Asks {
 
 impl UpVotes {
     /// Walls and floors.
-    pub fn of_patches(patches: &Patches) -> UpVotes {
+    pub fn of_patches(patches: &Patches, limits: &UpLimits) -> UpVotes {
         let mut heaviest: Vec<&Patch> = patches.patches.iter().collect();
         heaviest.sort_by_key(|p| std::cmp::Reverse(p.members.len()));
         heaviest.truncate(MOST_VOTERS);
         let voter = |p: &&Patch| Voter::Patch { normal: p.fit.plane.normal, sided: p.sided };
         let weights = heaviest.iter().map(|p| (p.members.len() as f64).sqrt()).collect();
-        UpVotes::new(heaviest.iter().map(voter).collect(), weights, PATCHES)
+        UpVotes::new(heaviest.iter().map(voter).collect(), weights, limits.patches, limits)
     }
 
     /// Cameras by their horizontal axes.
-    pub fn of_cameras(cam_from_sfm: &[Rotation3<f64>]) -> UpVotes {
+    pub fn of_cameras(cam_from_sfm: &[Rotation3<f64>], limits: &UpLimits) -> UpVotes {
         let axis = |r: &Rotation3<f64>, k: usize| r.matrix().row(k).transpose();
         let voter = |r: &Rotation3<f64>| Voter::Camera([0, 1, 2].map(|k| axis(r, k)));
         let step = cam_from_sfm.len().div_ceil(MOST_VOTERS).max(1);
         let voters: Vec<Voter> = cam_from_sfm.iter().step_by(step).map(voter).collect();
         let weights = vec![1.0; voters.len()];
-        UpVotes::new(voters, weights, CAMERAS)
+        UpVotes::new(voters, weights, limits.cameras, limits)
     }
 
-    fn new(voters: Vec<Voter>, mut weights: Vec<f64>, habits: Habits) -> UpVotes {
+    fn new(voters: Vec<Voter>, mut weights: Vec<f64>, habits: UpHabits, limits: &UpLimits) -> UpVotes {
         let total: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|w| *w /= total);
         let fellows = voters.iter().map(|a| voters.iter().map(|b| a.likeness(b)).sum::<f64>().max(1.0)).collect();
-        UpVotes { voters, weights, fellows, habits }
+        UpVotes { voters, weights, fellows, habits, limits: *limits }
     }
 
     /// Share of the voters for `up`, 0 to 1.
@@ -105,7 +81,7 @@ impl UpVotes {
         let even = 1.0 / self.voters.len() as f64;
         let kernel_sq = self.habits.kernel_rad.powi(2);
         // The variance of a voter of average weight.
-        let (mut votes, mut squares) = (VOTES_OF_KERNEL, VOTES_OF_KERNEL * kernel_sq);
+        let (mut votes, mut squares) = (self.limits.votes_of_kernel, self.limits.votes_of_kernel * kernel_sq);
         for (asks, weight, _) in self.asked(up) {
             let misfit = asks.misfit(up);
             let believed = self.kernel(&misfit) * weight / even;
@@ -126,7 +102,7 @@ impl UpVotes {
     /// What each voter asks of an up near this one, its weight and its fellows.
     fn asked(&self, up: &Vector3<f64>) -> impl Iterator<Item = (Asks, f64, f64)> {
         self.voters.iter().zip(&self.weights).zip(&self.fellows).filter_map(move |((voter, weight), fellows)| {
-            let (asks, likely) = voter.asks(up)?;
+            let (asks, likely) = voter.asks(up, &self.limits)?;
             Some((asks, weight * likely, *fellows))
         })
     }
@@ -138,7 +114,7 @@ impl UpVotes {
 
 impl Voter {
     /// What it asks of an up near this one, and how much it counts; `None` where it cannot be for it at all.
-    fn asks(&self, up: &Vector3<f64>) -> Option<(Asks, f64)> {
+    fn asks(&self, up: &Vector3<f64>, limits: &UpLimits) -> Option<(Asks, f64)> {
         match self {
             Voter::Patch { normal, sided } => {
                 let along = normal.dot(up);
@@ -148,10 +124,10 @@ impl Voter {
                 // Nobody photographs a floor from below.
                 (!sided || along > 0.0).then_some((Asks::Along(*normal), 1.0))
             }
-            Voter::Camera([_, _, forward]) if forward.dot(up) > STEEPEST_VIEW => None,
+            Voter::Camera([_, _, forward]) if forward.dot(up) > limits.steepest_view => None,
             Voter::Camera([right, down, _]) => {
-                let is_turned = down.dot(up) > UPSIDE_DOWN || right.dot(up).abs() > FRAC_1_SQRT_2;
-                Some(if is_turned { (Asks::Across(*down), QUARTER_TURNED) } else { (Asks::Across(*right), 1.0) })
+                let is_turned = down.dot(up) > limits.upside_down || right.dot(up).abs() > FRAC_1_SQRT_2;
+                Some(if is_turned { (Asks::Across(*down), limits.quarter_turned) } else { (Asks::Across(*right), 1.0) })
             }
         }
     }

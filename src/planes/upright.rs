@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use super::patches::Patches;
 use super::up_votes::UpVotes;
 use crate::geometry::{Matrix3, Vector3};
+use crate::limits::Limits;
 
 /// Up in the sfm frame.
 #[derive(Clone, Copy, Debug)]
@@ -53,12 +54,6 @@ pub enum UpChoice {
     Free(Upright),
 }
 
-/// Up worse than this is not known: three sigmas of it are what the normals of a right pair of patch and plane may differ by.
-const KNOWN_SIGMA_RAD: f64 = 0.04;
-/// A search under each of more directions than this costs what turning freely does (measured on the sample: 2 s against 20 s).
-const MOST_KNOWN: usize = 3;
-/// A search looks out to three sigmas of the start and not beyond.
-const REACH_SIGMAS: f64 = 3.0;
 /// A start that claims to be exact is still only as good as this.
 const SMALLEST_SIGMA_RAD: f64 = 1e-4;
 /// Directions of the grid are this far apart: one of them lies within half a kernel of every optimum.
@@ -70,20 +65,12 @@ const MOST_SEEDS: usize = 60;
 const MOST_STEPS: usize = 15;
 /// What lies further off no kernel has seen.
 const LONGEST_STEP_RAD: f64 = 0.2;
-/// Optima are distinct beyond so many of their common sigmas ...
-const DISTINCT_SIGMAS: f64 = 3.0;
-/// ... and comparable with at least this share of the best one's support: level photographs of one facade support it as a floor, seen by
-/// cameras that are turned by a quarter, with 0.6 to 0.8 of the right support.
-const COMPARABLE: f64 = 0.6;
-/// What leaving the start costs for each squared sigma: all of its reach as much as half of one kind of voters.
-const COST_OF_LEAVING: f64 = 0.05;
-
 /// Decides how to search, from the start's up and its sigma on.
-pub fn choose_up(patches: &Patches, start: &Upright) -> UpChoice {
-    let candidates = up_candidates(patches, start);
+pub fn choose_up(patches: &Patches, start: &Upright, limits: &Limits) -> UpChoice {
+    let candidates = up_candidates(patches, start, limits);
     // To search under some would leave out others that are as likely.
-    let all_known = candidates.iter().all(|c| c.sigma_rad <= KNOWN_SIGMA_RAD);
-    if candidates.is_empty() || candidates.len() > MOST_KNOWN || !all_known {
+    let all_known = candidates.iter().all(|c| c.sigma_rad <= limits.up.known_sigma_rad);
+    if candidates.is_empty() || candidates.len() > limits.up.most_known || !all_known {
         return UpChoice::Free(Upright { known: false, ..*start });
     }
     let upright = |c: UpCandidate| Upright { up: c.up, sigma_rad: c.sigma_rad, known: true };
@@ -91,31 +78,32 @@ pub fn choose_up(patches: &Patches, start: &Upright) -> UpChoice {
 }
 
 /// The up that walls, floors and cameras are for, where it lies beyond the start's reach and nothing within is comparable.
-pub fn up_beyond_start(patches: &Patches, start: &Upright) -> Option<UpCandidate> {
+pub fn up_beyond_start(patches: &Patches, start: &Upright, limits: &Limits) -> Option<UpCandidate> {
     let anywhere = Upright { sigma_rad: PI, ..*start };
-    let best = up_candidates(patches, &anywhere).into_iter().next()?;
+    let best = up_candidates(patches, &anywhere, limits).into_iter().next()?;
     let support = |c: &UpCandidate| c.patches + c.cameras;
-    let within = up_candidates(patches, start).iter().map(support).fold(0.0, f64::max);
+    let within = up_candidates(patches, start, limits).iter().map(support).fold(0.0, f64::max);
     let off_start = start.up.angle(&best.up) / start.sigma_rad.max(SMALLEST_SIGMA_RAD);
-    let is_beyond = off_start > REACH_SIGMAS && within < COMPARABLE * support(&best);
+    let is_beyond = off_start > limits.reach_sigmas && within < limits.up.comparable_share * support(&best);
     is_beyond.then_some(UpCandidate { off_start, ..best })
 }
 
 /// The directions that walls, floors, cameras and start together allow, the best supported first.
-pub fn up_candidates(patches: &Patches, start: &Upright) -> Vec<UpCandidate> {
+pub fn up_candidates(patches: &Patches, start: &Upright, limits: &Limits) -> Vec<UpCandidate> {
     let evidence = Evidence {
-        patches: UpVotes::of_patches(patches),
-        cameras: UpVotes::of_cameras(&patches.cam_from_sfm_rotations),
+        patches: UpVotes::of_patches(patches, &limits.up),
+        cameras: UpVotes::of_cameras(&patches.cam_from_sfm_rotations, &limits.up),
         start: Upright { sigma_rad: start.sigma_rad.max(SMALLEST_SIGMA_RAD), ..*start },
+        limits: *limits,
     };
     let polished: Vec<Optimum> = evidence.seeds().into_par_iter().map(|up| evidence.polished(up)).collect();
-    let within_reach = |o: &Optimum| evidence.off_start(&o.up) <= REACH_SIGMAS;
+    let within_reach = |o: &Optimum| evidence.off_start(&o.up) <= limits.reach_sigmas;
     let mut optima: Vec<Optimum> = polished.into_iter().filter(within_reach).collect();
     optima.sort_by(|a, b| b.support.total_cmp(&a.support));
     let mut distinct: Vec<Optimum> = Vec::new();
     for optimum in optima {
-        let least = distinct.first().map_or(f64::NEG_INFINITY, |best| COMPARABLE * best.support);
-        if optimum.support >= least && distinct.iter().all(|d| d.differs_from(&optimum)) {
+        let least = distinct.first().map_or(f64::NEG_INFINITY, |best| limits.up.comparable_share * best.support);
+        if optimum.support >= least && distinct.iter().all(|d| d.differs_from(&optimum, limits.up.distinct_sigmas)) {
             distinct.push(optimum);
         }
     }
@@ -133,6 +121,7 @@ struct Evidence {
     patches: UpVotes,
     cameras: UpVotes,
     start: Upright,
+    limits: Limits,
 }
 
 impl Evidence {
@@ -141,7 +130,7 @@ impl Evidence {
     }
 
     fn support(&self, up: &Vector3<f64>) -> f64 {
-        self.patches.share(up) + self.cameras.share(up) - COST_OF_LEAVING * self.off_start(up).powi(2)
+        self.patches.share(up) + self.cameras.share(up) - self.limits.up.cost_of_leaving * self.off_start(up).powi(2)
     }
 
     /// Directions to polish, the best supported first.
@@ -161,7 +150,7 @@ impl Evidence {
     /// Directions within the start's reach, evenly on rings about its up.
     fn grid(&self) -> Vec<Vector3<f64>> {
         let at_start = Tangent::across(&self.start.up, &Matrix3::zeros());
-        let reach = (REACH_SIGMAS * self.start.sigma_rad).min(PI);
+        let reach = (self.limits.reach_sigmas * self.start.sigma_rad).min(PI);
         let mut grid = Vec::new();
         for ring in 0..=(reach / STEP_RAD).ceil() as usize {
             let (sin, cos) = (ring as f64 * STEP_RAD).min(reach).sin_cos();
@@ -208,10 +197,10 @@ impl Optimum {
         Tangent::across(&self.up, &self.information)
     }
 
-    fn differs_from(&self, other: &Optimum) -> bool {
+    fn differs_from(&self, other: &Optimum, sigmas: f64) -> bool {
         let Some(along) = (other.up - self.up).try_normalize(0.0) else { return false };
         let variance = |o: &Optimum| along.dot(&o.tangent().solved(&along));
-        self.up.angle(&other.up) > DISTINCT_SIGMAS * (variance(self) + variance(other)).sqrt()
+        self.up.angle(&other.up) > sigmas * (variance(self) + variance(other)).sqrt()
     }
 }
 
@@ -252,7 +241,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Point3, Rotation3};
     use crate::planes::fit::fit_plane;
-    use crate::planes::patches::{Patch, PatchOptions, patches};
+    use crate::planes::patches::{Patch, patches};
     use crate::reconstruction::{ImageIndex, PointIndex, Reconstruction, read_reconstruction};
     use crate::robust::Random;
 
@@ -305,7 +294,7 @@ mod tests {
     #[test]
     fn finds_up_among_walls_floors_and_roofs() {
         let turned = Turned(Rotation3::from_euler_angles(0.05, -0.04, 0.3));
-        let found = up_candidates(&turned.scene(&BLOCK, &[]), &start(Vector3::z(), 2.0));
+        let found = up_candidates(&turned.scene(&BLOCK, &[]), &start(Vector3::z(), 2.0), &Limits::default());
         assert_eq!(found.len(), 1);
         let sigma_deg = found[0].sigma_rad / DEGREE;
         assert!(turned.off(&found[0].up) < sigma_deg && sigma_deg < 1.2, "{} of {sigma_deg}", turned.off(&found[0].up));
@@ -316,7 +305,7 @@ mod tests {
         let turned = Turned(Rotation3::from_euler_angles(0.4, -1.1, 2.0));
         let street = [[1.0, 0.0, 0.0], [1.0, 0.01, 0.02], [-1.0, 0.01, 0.0], [1.0, 0.02, -0.01], [-1.0, 0.0, 0.01]];
         let said = Rotation3::from_axis_angle(&Vector3::x_axis(), 3.0 * DEGREE) * Vector3::z();
-        let found = up_candidates(&turned.scene(&street, &[]), &start(turned.0 * said, 2.0));
+        let found = up_candidates(&turned.scene(&street, &[]), &start(turned.0 * said, 2.0), &Limits::default());
         assert_eq!(found.len(), 1);
         assert!((turned.off(&found[0].up) - 3.0).abs() < 0.3, "{} degrees off", turned.off(&found[0].up));
         assert!((found[0].sigma_rad - 2.0 * DEGREE).abs() < 0.2 * DEGREE, "{} degrees", found[0].sigma_rad / DEGREE);
@@ -328,9 +317,10 @@ mod tests {
         let street = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.01], [1.0, 0.02, 0.0]];
         let facing_walls = [85.0, 92.0, 97.0, 88.0, -90.0].map(|heading| held(heading, 5.0, heading % 2.0));
         let start = start(turned.0 * Vector3::new(0.1, -0.2, 1.0).normalize(), 10.0);
-        let alone = up_candidates(&turned.scene(&street, &[]), &start);
-        assert!(alone[0].sigma_rad > KNOWN_SIGMA_RAD);
-        let UpChoice::Known(found) = choose_up(&turned.scene(&street, &facing_walls), &start) else {
+        let alone = up_candidates(&turned.scene(&street, &[]), &start, &Limits::default());
+        assert!(alone[0].sigma_rad > Limits::default().up.known_sigma_rad);
+        let UpChoice::Known(found) = choose_up(&turned.scene(&street, &facing_walls), &start, &Limits::default())
+        else {
             panic!("not known")
         };
         assert!(turned.off(&found[0].up) < 3.0 * found[0].sigma_rad / DEGREE);
@@ -344,7 +334,9 @@ mod tests {
         let portrait_too = |k: i32, roll: f64| if k % 4 == 0 { roll + 90.0 } else { roll };
         let cameras: Vec<_> =
             (0..12).map(|k| held(f64::from(k) * 30.0, 10.0 + askew(8.0), portrait_too(k, askew(1.5)))).collect();
-        let UpChoice::Known(found) = choose_up(&turned.scene(&[], &cameras), &start(Vector3::z(), 60.0)) else {
+        let UpChoice::Known(found) =
+            choose_up(&turned.scene(&[], &cameras), &start(Vector3::z(), 60.0), &Limits::default())
+        else {
             panic!("not known")
         };
         assert_eq!(found.len(), 1);
@@ -356,17 +348,19 @@ mod tests {
         let turned = Turned(Rotation3::from_euler_angles(0.7, 0.1, 0.2));
         let mut scene = turned.scene(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &[]);
         scene.patches.iter_mut().for_each(|p| p.sided = false);
-        assert_eq!(up_candidates(&scene, &start(Vector3::z(), 90.0)).len(), 6);
-        assert!(matches!(choose_up(&scene, &start(Vector3::z(), 90.0)), UpChoice::Free(_)));
+        assert_eq!(up_candidates(&scene, &start(Vector3::z(), 90.0), &Limits::default()).len(), 6);
+        assert!(matches!(choose_up(&scene, &start(Vector3::z(), 90.0), &Limits::default()), UpChoice::Free(_)));
         let near = start(turned.0 * Vector3::new(0.1, 0.1, 1.0).normalize(), 5.0);
-        assert!(matches!(choose_up(&scene, &near), UpChoice::Known(found) if turned.off(&found[0].up) < 0.5));
+        assert!(
+            matches!(choose_up(&scene, &near, &Limits::default()), UpChoice::Known(found) if turned.off(&found[0].up) < 0.5)
+        );
     }
 
     #[test]
     fn keeps_the_start_where_nothing_votes() {
         for sigma_deg in [0.0, 0.5, 17.0, 1e9] {
             let start = start(Vector3::new(0.0, 0.6, 0.8), sigma_deg);
-            let found = up_candidates(&Patches::default(), &start);
+            let found = up_candidates(&Patches::default(), &start, &Limits::default());
             assert_eq!(found.len(), 1);
             assert!(found[0].up.angle(&start.up) < 1e-6);
             assert!((found[0].sigma_rad - start.sigma_rad.max(SMALLEST_SIGMA_RAD)).abs() <= 1e-6 * found[0].sigma_rad);
@@ -380,14 +374,14 @@ mod tests {
         // From the alignment of the whole sample.
         let up = Vector3::new(-0.4583, -0.8572, 0.2349).normalize();
         for (first, count) in [(0, whole.images.len()), (0, 5), (0, 8), (3, 3)] {
-            let scene = patches(&of_images(&whole, first..first + count), None, &PatchOptions::default());
+            let scene = patches(&of_images(&whole, first..first + count), None, &Limits::default().patches);
             for sigma_deg in [2.0, 10.0, 60.0] {
                 let lean = Rotation3::from_axis_angle(&Vector3::z_axis(), sigma_deg * DEGREE);
-                let found = up_candidates(&scene, &start(lean * up, sigma_deg));
+                let found = up_candidates(&scene, &start(lean * up, sigma_deg), &Limits::default());
                 let nearest = found.iter().min_by(|a, b| a.up.angle(&up).total_cmp(&b.up.angle(&up))).unwrap();
                 let off = nearest.up.angle(&up);
                 assert!(
-                    off < 3.0 * nearest.sigma_rad && nearest.sigma_rad < KNOWN_SIGMA_RAD,
+                    off < 3.0 * nearest.sigma_rad && nearest.sigma_rad < Limits::default().up.known_sigma_rad,
                     "{count}: {off} {nearest:?}"
                 );
             }
@@ -419,8 +413,8 @@ mod tests {
         let turned = Turned(Rotation3::from_euler_angles(0.5, 0.0, 0.0));
         let cameras: Vec<_> = (0..8).map(|k| held(f64::from(k) * 45.0, 5.0, 0.0)).collect();
         let scene = turned.scene(&BLOCK, &cameras);
-        let beyond = up_beyond_start(&scene, &start(Vector3::z(), 2.0)).unwrap();
+        let beyond = up_beyond_start(&scene, &start(Vector3::z(), 2.0), &Limits::default()).unwrap();
         assert!(turned.off(&beyond.up) < 1.0 && beyond.off_start > 3.0);
-        assert!(up_beyond_start(&scene, &start(Vector3::z(), 20.0)).is_none());
+        assert!(up_beyond_start(&scene, &start(Vector3::z(), 20.0), &Limits::default()).is_none());
     }
 }

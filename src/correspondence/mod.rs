@@ -14,6 +14,8 @@ mod scoring;
 mod search;
 mod sight;
 mod targets;
+#[cfg(test)]
+mod test_scene;
 mod votes;
 mod walk;
 

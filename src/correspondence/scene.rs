@@ -60,3 +60,47 @@ impl<'a> Scene<'a> {
         *city_from_level * self.votes.level_from_sfm
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correspondence::test_scene::{Made, walls_alone};
+    use crate::geometry::{Point3, StartSigmas, Vector3};
+    use crate::planes::PlaneId;
+    use crate::synthetic::{Block, Offset};
+
+    #[test]
+    fn nothing_beyond_the_reach_is_met_and_all_that_can_be_seen_within_it_is() {
+        // What was seen is the first block of a town that goes on.
+        let town = Block::town(4, 1, 3);
+        let survey = Block::new(town.houses[..6].to_vec()).cloud(&walls_alone());
+        let made = Made::new(town, survey);
+        let up = made.survey.city_from_sfm.rotation.inverse() * Vector3::z();
+        let upright = Upright { up, sigma_rad: 0.0, known: true };
+        let sigmas = StartSigmas { position_m: 2.0, height_m: 1.0, ..StartSigmas::default() };
+        let scene = made.scene_with(&Offset::default(), sigmas, Motion::Rigid, &upright);
+        let (mut within, mut beyond) = (0, 0);
+        for (id, facet) in made.city.model.facets_with_ids() {
+            for triangle in facet.triangles.clone().filter(|t| made.city.is_exposed(*t)) {
+                let [a, b, c] = made.city.corners(triangle);
+                let position = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+                let probe = Probe { position, normal: facet.plane.normal, sided: true, min_cos: 0.9 };
+                let met: Option<PlaneId> = scene.nearest(&probe, scene.unit_m).map(|hit| hit.plane);
+                let is_within = scene.reach.contains(&position);
+                assert_eq!(met, is_within.then(|| made.city.planes().of_facet(id)), "{position}");
+                *(if is_within { &mut within } else { &mut beyond }) += 1;
+            }
+        }
+        assert!(within > 20 && beyond > 100, "{within} {beyond}");
+    }
+
+    #[test]
+    fn the_grid_answers_as_far_as_the_widest_gate_of_the_largest_scale_within_reach() {
+        let made = Made::four_houses();
+        for motion in [Motion::Rigid, Motion::Similarity] {
+            let scene = made.scene(&Offset::default(), motion);
+            let widest_m = made.limits.search.gate_units * scene.unit_m * scene.prior.most_scale();
+            assert!(scene.grid.reach_m() >= widest_m, "{} {widest_m}", scene.grid.reach_m());
+        }
+    }
+}

@@ -169,3 +169,116 @@ pub fn largest_shift(a: &Similarity, b: &Similarity, radius_m: f64) -> f64 {
         .map(|p| (a.apply(&p) - b.apply(&p)).norm())
         .fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correspondence::test_scene::Made;
+    use crate::synthetic::{Offset, Survey};
+
+    /// Of the poses kept, the nearest to the truth: how far it moves the scene, metres.
+    fn nearest_m(made: &Made, scene: &Scene, ranked: &[Ranked<Similarity>]) -> f64 {
+        let truth = made.truth(scene);
+        ranked.iter().map(|r| largest_shift(&r.pose, &truth, scene.votes.radius_m)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The poses that samples of one configuration lead to.
+    fn searched(scene: &Scene, configuration: &Configuration, seed: u64) -> Vec<Ranked<Similarity>> {
+        let (sampler, panel) = (Sampler::new(scene), scene.votes.panel(200));
+        let search = PoseSearch { scene, sampler: &sampler, sought: sought(scene), configuration, panel: &panel };
+        let options =
+            RansacOptions { seed, keep: 60, fewest_samples: 2048, most_samples: MOST_SAMPLES, enough_hits: 3 };
+        ransac(&search, &options, |_| ()).0
+    }
+
+    const MOST_SAMPLES: usize = 32_768;
+
+    /// Starts that are off by as much as their sigmas say, and one by twice that.
+    fn starts() -> [Offset; 3] {
+        let turned = |shift_m, heading_rad, scale| Offset { shift_m, heading_rad, scale, ..Offset::default() };
+        [
+            turned([6.0, -5.0, 1.5], 0.15, 1.12),
+            turned([-8.0, 4.0, -2.0], -0.2, 0.9),
+            turned([14.0, 12.0, 4.0], 0.3, 1.2),
+        ]
+    }
+
+    #[test]
+    fn every_configuration_of_a_known_vertical_keeps_the_truth_among_its_poses() {
+        let made = Made::four_houses();
+        for motion in [Motion::Rigid, Motion::Similarity] {
+            for (seed, start) in (0..).zip(starts()) {
+                let scale = if motion == Motion::Rigid { 1.0 } else { start.scale };
+                let scene = made.scene(&Offset { scale, ..start }, motion);
+                for configuration in sought(&scene).configurations() {
+                    let ranked = searched(&scene, configuration, seed);
+                    let off_m = nearest_m(&made, &scene, &ranked);
+                    // One place of the search: what refinement converges from.
+                    assert!(off_m < made.limits.search.same_place_m, "{motion:?} {configuration} {seed}: {off_m}");
+                    let rigid = ranked.iter().all(|r| r.pose.scale.to_bits() == 1f64.to_bits());
+                    assert_eq!(rigid, motion == Motion::Rigid);
+                    assert!(ranked.iter().all(|r| scene.prior.reaches(&r.pose)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_configuration_that_turns_freely_keeps_the_truth_among_its_poses() {
+        let made = Made::four_houses();
+        for motion in [Motion::Rigid, Motion::Similarity] {
+            let leaning = Offset { tilt_rad: [0.08, -0.05], ..starts()[0] };
+            let scale = if motion == Motion::Rigid { 1.0 } else { leaning.scale };
+            let scene = made.leaning_scene(&Offset { scale, ..leaning }, motion);
+            for configuration in sought(&scene).configurations() {
+                let ranked = searched(&scene, configuration, 1);
+                let off_m = nearest_m(&made, &scene, &ranked);
+                assert!(off_m < made.limits.search.same_place_m, "{motion:?} {configuration}: {off_m}");
+                let rigid = ranked.iter().all(|r| r.pose.scale.to_bits() == 1f64.to_bits());
+                assert_eq!(rigid, motion == Motion::Rigid);
+            }
+        }
+    }
+
+    #[test]
+    fn the_search_names_its_configuration_and_ranks_the_best_first() {
+        let made = Made::four_houses();
+        for (seed, start) in (5..).zip(starts()) {
+            let scene = made.scene(&start, Motion::Similarity);
+            let found = search(&scene, seed, &|_, _| ());
+            assert_eq!(found.solver, "upright similarity (2,1,1,1)");
+            assert!(found.samples >= made.limits.search.fewest_samples, "{}", found.samples);
+            assert!(found.ranked.is_sorted_by(|a, b| a.score >= b.score) && found.ranked.len() <= 60);
+            assert!(nearest_m(&made, &scene, &found.ranked[..10]) < made.limits.search.same_place_m);
+            for (i, a) in found.ranked.iter().enumerate() {
+                let apart = |b: &Ranked<Similarity>| largest_shift(&a.pose, &b.pose, scene.votes.radius_m);
+                assert!(found.ranked[..i].iter().all(|b| apart(b) >= made.limits.search.same_place_m));
+            }
+        }
+    }
+
+    #[test]
+    fn patches_that_feed_no_solver_are_not_searched() {
+        let Made { block, mut survey, .. } = Made::four_houses();
+        // The front of the first house alone: no second normal tells how it turns.
+        survey.sfm.points.truncate(150);
+        survey.face_of_point.truncate(150);
+        let made = Made::new(block, Survey { ..survey });
+        let found = search(&made.leaning_scene(&Offset::default(), Motion::Similarity), 0, &|_, _| ());
+        assert_eq!((found.solver.as_str(), found.samples, found.ranked.len()), (NO_SOLVER, 0, 0));
+    }
+
+    #[test]
+    fn one_seed_gives_the_same_poses_for_any_number_of_threads_and_another_seed_others() {
+        let made = Made::four_houses();
+        let with = |threads: usize, seed: u64| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let found = pool.install(|| search(&made.scene(&starts()[0], Motion::Similarity), seed, &|_, _| ()));
+            let told = |r: &Ranked<Similarity>| (r.pose, r.score.to_bits(), r.hits);
+            (found.ranked.iter().map(told).collect::<Vec<_>>(), found.samples)
+        };
+        let one = with(1, 4);
+        assert_eq!(one, with(3, 4));
+        assert_ne!(one, with(3, 5));
+    }
+}

@@ -39,3 +39,70 @@ impl Scene<'_> {
         self.city.rays().first_hit(&(place + direction * limits.surroundings_m), &direction, length).is_some()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correspondence::test_scene::{Made, firm};
+    use crate::geometry::Vector3;
+    use crate::robust::Motion;
+    use crate::synthetic::Offset;
+
+    /// Whether points of the city (as the block has it) are hidden from cameras that stand there. The first house of the block lies within
+    /// x 0 to 12, y 0 to 8, z 0 to 7.
+    fn hidden(place: [f64; 3], cameras: &[[f64; 3]]) -> bool {
+        let made = Made::four_houses();
+        let mut scene = made.scene(&Offset::default(), Motion::Rigid);
+        let local = |x: [f64; 3]| Point3::from(Vector3::from(x) - made.city.model.origin);
+        scene.votes.probes[0].position = local(place);
+        scene.votes.cameras = cameras.iter().map(|c| local(*c)).collect();
+        let viewer = |k: usize| (k < cameras.len()).then_some(k as u32);
+        scene.votes.viewers[0] = [viewer(0), viewer(1)];
+        scene.blocked(&[0], &Similarity::identity())[0]
+    }
+
+    const BEFORE: [f64; 3] = [6.0, -15.0, 1.7];
+    const BEHIND: [f64; 3] = [6.0, 15.0, 1.7];
+
+    #[test]
+    fn a_point_behind_a_house_is_blocked_unless_one_of_its_cameras_sees_it() {
+        let on_front = [6.0, 0.0, 3.0];
+        assert!(!hidden(on_front, &[BEFORE]));
+        assert!(hidden(on_front, &[BEHIND]));
+        assert!(hidden(on_front, &[BEHIND, BEHIND]));
+        assert!(!hidden(on_front, &[BEHIND, BEFORE]));
+        // Over the roof, 7 m high and 8 m deep.
+        assert!(!hidden([6.0, -0.1, 7.5], &[[6.0, 15.0, 9.0]]));
+    }
+
+    #[test]
+    fn a_point_without_cameras_is_never_blocked() {
+        assert!(!hidden([6.0, 4.0, 3.0], &[]));
+    }
+
+    #[test]
+    fn neither_the_surroundings_of_a_point_nor_those_of_its_camera_hide_it() {
+        let limits = crate::limits::Limits::default().sight;
+        let inside = |depth_m: f64| hidden([6.0, depth_m, 3.0], &[BEFORE]);
+        assert!(!inside(0.9 * limits.surroundings_m) && inside(1.1 * limits.surroundings_m));
+        let camera_inside = |depth_m: f64| hidden([6.0, -9.0, 1.7], &[[6.0, depth_m, 1.7]]);
+        assert!(!camera_inside(0.9 * limits.camera_slack_m) && camera_inside(1.1 * limits.camera_slack_m));
+        // A camera nearer than both sees what it stands before.
+        assert!(!hidden([6.0, 0.5, 3.0], &[[6.0, -0.5, 3.0]]));
+    }
+
+    #[test]
+    fn the_truth_leaves_the_lines_of_sight_free_and_a_place_across_the_houses_does_not() {
+        let made = Made::photographed();
+        let scene = made.scene(&Offset::default(), Motion::Rigid);
+        let panel = firm(&scene);
+        let share = |off: &Offset| {
+            let blocked = scene.blocked(&panel, &made.pose(&scene, off));
+            blocked.iter().filter(|b| **b).count() as f64 / blocked.len() as f64
+        };
+        let off = Offset { shift_m: [9.0, 7.0, 0.0], ..Offset::default() };
+        assert_eq!(share(&Offset::default()), 0.0);
+        // Several houses are in the way; how many lines they cut depends on the place.
+        assert!(share(&off) > 0.1, "{}", share(&off));
+    }
+}

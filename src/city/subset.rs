@@ -27,8 +27,10 @@ impl CityModel {
             facets_before.push(kept.facets.len() as u32);
             objects_before.push(kept.objects.len() as u32);
         }
+        // Where facets were taken away by hand, the sources may count more than there are.
+        let at = |facet: u32| (facet as usize).min(self.facets.len());
         for source in &self.sources {
-            let (start, end) = (source.facets.start as usize, source.facets.end as usize);
+            let (start, end) = (at(source.facets.start), at(source.facets.end));
             let facets = facets_before[start]..facets_before[end];
             let objects = objects_before[start]..objects_before[end];
             kept.sources.push(CitySource { facets, objects, ..source.clone() });

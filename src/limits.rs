@@ -53,6 +53,9 @@ pub struct ExposureLimits {
     pub start_m: f64,
     /// What is nearer than this in front of a facet hides it. Chosen: nobody stands there.
     pub narrowest_gap_m: f64,
+    /// The front of a neighbour's wall this near before the back of one's own is met with it: the two share a party wall, often to the
+    /// last digit. Chosen: models are written to centimetres or finer.
+    pub joint_m: f64,
     /// Lines of sight that meet nothing within this distance end in the open. Chosen: wider than a courtyard.
     pub open_m: f64,
     /// Larger triangles are looked at from three places, square metres. Chosen.

@@ -44,6 +44,17 @@ impl RayCaster {
     /// The first triangle between `from` (exclusive) and `from + direction * reach`; `direction` has unit length. Of equally
     /// distant triangles the one with the lowest index.
     pub fn first_hit(&self, from: &Point3<f64>, direction: &Vector3<f64>, reach: f64) -> Option<Sight> {
+        self.first_hit_of(|_| true, from, direction, reach)
+    }
+
+    /// The same among the triangles that `counts` accepts.
+    pub fn first_hit_of(
+        &self,
+        counts: impl Fn(u32) -> bool,
+        from: &Point3<f64>,
+        direction: &Vector3<f64>,
+        reach: f64,
+    ) -> Option<Sight> {
         if self.shapes.is_empty() {
             return None;
         }
@@ -52,7 +63,7 @@ impl RayCaster {
         for shape in self.tree.traverse_iterator(&line, &self.shapes) {
             let Some(distance) = shape.meets(from, direction) else { continue };
             let nearer = best.is_none_or(|b| (distance, shape.triangle) < (b.distance, b.triangle));
-            if distance <= reach && nearer {
+            if distance <= reach && nearer && counts(shape.triangle) {
                 best = Some(Sight { distance, triangle: shape.triangle });
             }
         }

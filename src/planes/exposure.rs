@@ -46,7 +46,12 @@ fn is_exposed(triangle: u32, city: &PreparedCity, limits: &ExposureLimits) -> bo
     let ends_in_the_open =
         |from: &Point3<f64>, direction: &Vector3<f64>| match city.rays().first_hit(from, direction, limits.open_m) {
             None => true,
-            Some(sight) => sight.distance > limits.narrowest_gap_m && normal(sight.triangle).dot(direction) < 0.0,
+            Some(sight) => {
+                let is_back = |t: u32| normal(t).dot(direction) >= 0.0;
+                let leaves_a_solid =
+                    || city.rays().first_hit_of(is_back, from, direction, sight.distance + limits.joint_m).is_some();
+                sight.distance > limits.narrowest_gap_m && !is_back(sight.triangle) && !leaves_a_solid()
+            }
         };
     let outward = normal(triangle);
     let directions = fan(&outward);

@@ -376,6 +376,57 @@ fn bisectors(a: &Vector3<f64>, b: &Vector3<f64>) -> Option<Matrix3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::correspondence::test_scene::Made;
+    use crate::synthetic::Offset;
+
+    /// Samples on four planes of four houses, from a start that is off by a sigma or so.
+    fn samples(scene: &Scene) -> Vec<Sample> {
+        let sampler = Sampler::new(scene);
+        (0..2000).filter_map(|stream| sampler.draw(4, &mut Random::stream(7, stream))).collect()
+    }
+
+    const OFF: Offset = Offset { shift_m: [6.0, -5.0, 1.5], heading_rad: 0.15, tilt_rad: [0.0; 2], scale: 1.1 };
+
+    #[test]
+    fn a_sample_pairs_patches_with_planes_in_sight_that_face_their_way() {
+        let made = Made::four_houses();
+        for scene in [made.scene(&OFF, Motion::Similarity), made.leaning_scene(&OFF, Motion::Similarity)] {
+            let in_sight = scene.city.planes_in_sight(&scene.reach.low, &scene.reach.high);
+            // The turn of the start, a tilt where it may lean, and what patch normals are off.
+            let most_rad = scene.prior.most_heading_rad() + scene.prior.most_tilt_rad() + 2.0 * 0.12;
+            let drawn = samples(&scene);
+            assert!(drawn.len() > 100, "{}", drawn.len());
+            for sample in &drawn {
+                assert_eq!(sample.pairs.len() + sample.completion.len(), 4);
+                assert!(sample.chance > 0.0 && sample.chance <= 1.0, "{}", sample.chance);
+                for pair in &sample.pairs {
+                    assert!(in_sight.contains(&pair.plane));
+                    let plane = &made.city.planes().planes[pair.plane.0 as usize].plane;
+                    assert_eq!(pair.target, *plane);
+                    assert!(pair.normal.angle(&plane.normal) < most_rad, "{pair:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_right_planes_are_drawn_about_as_often_as_the_samples_say() {
+        let made = Made::four_houses();
+        let scene = made.scene(&OFF, Motion::Similarity);
+        let truth = made.truth(&scene);
+        // A pair is right where the truth puts the patch into its plane.
+        let is_right = |pair: &Pair| {
+            let center = truth.apply(&scene.votes.patches[pair.patch as usize].center);
+            pair.target.signed_distance(&center).abs() < 0.3
+                && (truth.rotation * pair.normal).dot(&pair.target.normal) > 0.95
+        };
+        let drawn = samples(&scene);
+        let right = drawn.iter().filter(|sample| sample.pairs.iter().all(is_right)).count();
+        let said: f64 = drawn.iter().map(|sample| sample.chance).sum();
+        // The likelihoods are those of a Gaussian that knows nothing of the block: right to a factor of five.
+        let ratio = right as f64 / said;
+        assert!(right > 5 && ratio > 0.2 && ratio < 5.0, "{right} right, {said} said, {}", drawn.len());
+    }
 
     #[test]
     fn bisectors_lay_one_pair_of_normals_onto_another() {

@@ -190,3 +190,73 @@ fn class(normal: &Vector3<f64>, upright_sin: f64) -> usize {
 fn half_turn() -> Rotation3<f64> {
     Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correspondence::test_scene::{Made, walls_alone, with_points};
+    use crate::robust::Motion;
+    use crate::synthetic::{Block, CloudOptions, Offset};
+
+    #[test]
+    fn the_level_frame_stands_upright_about_the_cloud_in_metres_of_the_start() {
+        let made = Made::four_houses();
+        let start = Offset { heading_rad: 0.2, tilt_rad: [0.05, 0.1], scale: 1.1, ..Offset::default() };
+        let votes = made.scene(&start, Motion::Similarity).votes;
+        assert_eq!(votes.level_from_sfm.apply(&made.patches.middle()), Point3::origin());
+        let up = votes.level_from_sfm.rotation * made.survey.city_from_sfm.rotation.inverse() * Vector3::z();
+        assert!((up - Vector3::z()).norm() < 1e-12, "{up}");
+        assert!((votes.level_from_sfm.scale / (1.1 * made.survey.city_from_sfm.scale) - 1.0).abs() < 1e-12);
+        // Axis by axis 2 cm, and the start's scale.
+        assert!((votes.noise_m / (1.1 * 0.02) - 1.0).abs() < 0.2, "{}", votes.noise_m);
+    }
+
+    #[test]
+    fn weights_are_one_vote_together_and_little_ground_is_heard_beside_many_walls() {
+        let seen = CloudOptions { points_on_ground: 60, ..walls_alone() };
+        let made = Made::cloud(Block::four_houses().with_ground(true), &seen);
+        let votes = made.scene(&Offset::default(), Motion::Rigid).votes;
+        assert!((votes.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        let of_ground: f64 = votes.patches.iter().filter(|p| p.normal.z > 0.9).map(|p| p.weight).sum();
+        let share_of_points = 60.0 / votes.firm as f64;
+        assert!(of_ground > 2.0 * share_of_points, "{of_ground} {share_of_points}");
+        for patch in &votes.patches {
+            let sum: f64 = votes.weights[patch.probes.clone()].iter().sum();
+            assert!((sum - patch.weight).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_panel_gives_every_patch_its_share_and_loose_points_nothing() {
+        let roof = |k: i32| (Point3::new(1.0 + f64::from(k), 4.0, 7.0), Vector3::z());
+        let survey = with_points(Block::four_houses().cloud(&walls_alone()), &(0..5).map(roof).collect::<Vec<_>>());
+        let made = Made::new(Block::four_houses(), survey);
+        let votes = made.scene(&Offset::default(), Motion::Rigid).votes;
+        assert_eq!(votes.probes.len(), votes.firm + 5);
+        for count in [1, 200, 1500] {
+            let panel = votes.panel(count);
+            assert_eq!(panel.len(), count);
+            assert!(panel.iter().all(|i| (*i as usize) < votes.firm));
+            for patch in &votes.patches {
+                let drawn = panel.iter().filter(|i| patch.probes.contains(&(**i as usize))).count() as f64;
+                assert!((drawn - patch.weight * count as f64).abs() <= 1.0, "{drawn} of {count}, {}", patch.weight);
+            }
+        }
+    }
+
+    #[test]
+    fn the_extent_holds_the_cloud_but_for_stray_points() {
+        let made = Made::four_houses();
+        let votes = made.scene(&Offset::default(), Motion::Rigid).votes;
+        let extent = votes.extent();
+        let holds = |p: &Probe| {
+            let z = p.position.z;
+            p.position.coords.xy().norm() <= extent.radius_m && z >= extent.bottom_m && z <= extent.top_m
+        };
+        let held = votes.probes[..votes.firm].iter().filter(|p| holds(p)).count();
+        // The radius of nine in ten, and a fifth more.
+        assert!(held as f64 > 0.9 * votes.firm as f64, "{held} of {}", votes.firm);
+        // The houses are up to 12 m high.
+        assert!((extent.top_m - extent.bottom_m - 12.0).abs() < 1.0, "{extent:?}");
+    }
+}

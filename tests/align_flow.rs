@@ -1,7 +1,8 @@
 //! The whole alignment on a small made-up block: houses, ground, a cloud with noise and clutter, a start that is off.
 
-use cityweld::geometry::{Start, StartSigmas, Vector3};
-use cityweld::planes::PreparedCity;
+use cityweld::city::CityModel;
+use cityweld::geometry::{Point3, Start, StartSigmas, Vector3};
+use cityweld::planes::{PatchOptions, PreparedCity, patches};
 use cityweld::reconstruction::Reconstruction;
 use cityweld::synthetic::{Block, CaptureOptions, CloudOptions, Move, Offset, Ring, Station, Survey, sfm_from_city};
 use cityweld::verdict::{Alignment, Verdict};
@@ -184,4 +185,178 @@ fn gives_the_same_numbers_for_any_number_of_threads() {
     assert_eq!(one.best, three.best);
     assert_eq!(one.covariance, three.covariance);
     assert_eq!(one.reason, three.reason);
+}
+
+/// What is said where nothing can be found, and that it was said before any search.
+fn refusal(city: &PreparedCity, reconstruction: &Reconstruction, start: Start) -> String {
+    let alignment = align(city, reconstruction, None, &AlignOptions { start, ..options(0) }, &|_, _, _| ());
+    assert_eq!((alignment.verdict, alignment.best), (Verdict::Failed, None), "{}", alignment.reason);
+    assert_eq!((alignment.search.samples, alignment.search.solver.as_str()), (0, "none"), "{}", alignment.reason);
+    assert!(alignment.freedoms.is_empty() && alignment.alternatives.is_empty() && alignment.evidence.is_empty());
+    assert_finite(&alignment);
+    alignment.reason
+}
+
+#[test]
+fn what_stands_in_the_way_of_any_alignment_is_named_without_a_search() {
+    let (city, seen) = (prepared(true), survey(true).sfm);
+    let reason = refusal(&PreparedCity::new(CityModel::default()), &seen, start_off(&OFF));
+    assert!(reason.contains("the city model has no facets"), "{reason}");
+    let reason = refusal(&city, &Reconstruction::default(), start_off(&OFF));
+    assert!(reason.contains("the reconstruction has no points"), "{reason}");
+    let photographs = block(true).capture(&Ring::street(5).stations(&block(true)), &CaptureOptions::default()).sfm;
+    let only_images = Reconstruction { points: Vec::new(), track_starts: Vec::new(), ..photographs };
+    let reason = refusal(&city, &only_images, start_off(&OFF));
+    assert!(reason.contains("no points, only 5 images") && reason.contains("point_triangulator"), "{reason}");
+    // Too few points for a plane, and points that are nowhere on one.
+    let few = Reconstruction { points: seen.points[..7].to_vec(), ..Reconstruction::default() };
+    let reason = refusal(&city, &few, start_off(&OFF));
+    assert!(reason.contains("no planar patch among 7 points"), "{reason}");
+    let one_place = Reconstruction { points: vec![seen.points[0]; 500], ..Reconstruction::default() };
+    let reason = refusal(&city, &one_place, start_off(&OFF));
+    assert!(reason.contains("no planar patch among 500 points"), "{reason}");
+}
+
+#[test]
+fn a_start_that_cannot_reach_the_city_is_refused_with_both_places_and_the_distance() {
+    let mut far = *start_off(&OFF).city_from_sfm();
+    far.translation += Vector3::new(0.0, 5.78e6, 0.0);
+    let reason = refusal(&prepared(true), &survey(true).sfm, Start::with_default_sigmas(far));
+    // The cloud's middle is 5,780 km north of a block that lies within a hundred metres of the frame's origin.
+    for told in ["5,780 km from the city", "57800", "the city lies from -", "same frame and unit"] {
+        assert!(reason.contains(told), "{told:?} is not in: {reason}");
+    }
+    // The same start with sigmas that reach so far is searched, and finds nothing worse than a verdict.
+    let vast = StartSigmas { position_m: 1e7, ..StartSigmas::default() };
+    let start = Start::new(far, vast).unwrap();
+    let alignment = run(true, &AlignOptions { start, ..options(0) });
+    assert!(alignment.search.samples > 0, "{}", alignment.reason);
+    assert_finite(&alignment);
+}
+
+/// No number that is none, anywhere in a result.
+fn assert_finite(alignment: &Alignment) {
+    let mut numbers = vec![alignment.radius, alignment.support.rms_m, alignment.support.median_m];
+    numbers.extend(alignment.origin.iter().chain(alignment.center.iter()).chain(alignment.covariance.iter().flatten()));
+    for found in alignment.best.iter().chain(alignment.alternatives.iter().map(|a| &a.city_from_sfm)) {
+        numbers.push(found.scale);
+        numbers.extend(found.rotation.matrix().iter().chain(found.translation.iter()));
+    }
+    numbers.extend(alignment.alternatives.iter().map(|a| a.weight));
+    numbers.extend(alignment.freedoms.iter().flat_map(|f| [f.sigma, f.direction.x, f.direction.y, f.direction.z]));
+    numbers.extend(alignment.evidence.iter().map(|e| e.rms_m));
+    assert!(numbers.iter().all(|v| v.is_finite()), "{alignment:?}");
+    assert!(!alignment.reason.contains("NaN") && !alignment.reason.contains("inf"), "{}", alignment.reason);
+    assert!(alignment.freedoms.iter().all(|f| f.sigma >= 0.0), "{:?}", alignment.freedoms);
+}
+
+#[test]
+fn a_start_with_sigmas_of_zero_gives_finite_numbers_everywhere() {
+    let zero = StartSigmas { position_m: 0.0, height_m: 0.0, heading_rad: 0.0, tilt_rad: 0.0, log_scale: 0.0 };
+    let truth = start_off(&Offset::default());
+    for (start, fixed_scale, up) in [
+        (truth, None, Up::Auto),
+        (truth, Some(true_scale()), Up::Auto),
+        (truth, None, Up::None),
+        (start_off(&OFF), None, Up::Auto),
+        (start_off(&OFF), Some(true_scale()), Up::None),
+    ] {
+        let start = Start::new(*start.city_from_sfm(), zero).unwrap();
+        for with_ground in [true, false] {
+            let alignment = run(with_ground, &AlignOptions { start, fixed_scale, up, ..options(0) });
+            assert_finite(&alignment);
+            // Where the start is sure, nothing is searched elsewhere.
+            if let Some(best) = alignment.best {
+                let off = block(true).move_by(&(best * start.city_from_sfm().inverse()));
+                assert!(off.level_m < 1.5 && off.up_m < 1.5, "{off:?}: {}", alignment.reason);
+            }
+        }
+    }
+}
+
+#[test]
+fn sigmas_of_ten_thousand_kilometres_find_the_block() {
+    let vast = StartSigmas { position_m: 1e7, height_m: 1e7, ..StartSigmas::default() };
+    let start = Start::new(*start_off(&OFF).city_from_sfm(), vast).unwrap();
+    let alignment = run(true, &AlignOptions { start, ..options(0) });
+    assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
+    let (level, up) = errors(&alignment);
+    assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
+    assert_finite(&alignment);
+}
+
+#[test]
+fn points_that_are_given_twice_or_in_another_order_change_nothing() {
+    let survey = survey(true).sfm;
+    let found = |points: Vec<Point3<f64>>| {
+        let cloud = Reconstruction { points, ..Reconstruction::default() };
+        align(&prepared(true), &cloud, None, &options(2), &|_, _, _| ())
+    };
+    let once = found(survey.points.clone());
+    let twice = found([survey.points.clone(), survey.points.clone()].concat());
+    let backwards = found(survey.points.iter().rev().copied().collect());
+    // Every seventh point first, then those after them, and so on.
+    let shuffled = found((0..7).flat_map(|k| survey.points.iter().skip(k).step_by(7)).copied().collect());
+    assert_eq!(once.verdict, Verdict::Aligned, "{}", once.reason);
+    for other in [&twice, &backwards, &shuffled] {
+        assert_eq!((once.best, once.verdict, &once.reason), (other.best, other.verdict, &other.reason));
+        assert_eq!(once.covariance, other.covariance);
+    }
+    assert!(once.warnings.iter().all(|w| !w.contains("place of another")), "{:?}", once.warnings);
+    let copies = format!("{} points stand at the place of another", survey.points.len());
+    assert!(twice.warnings.iter().any(|w| w.starts_with(&copies)), "{:?}", twice.warnings);
+}
+
+#[test]
+fn one_prepared_city_serves_two_alignments_in_either_order_as_fresh_ones_would() {
+    let jobs = [
+        (true, options(0)),
+        (false, options(1)),
+        (true, AlignOptions { fixed_scale: Some(true_scale()), ..options(2) }),
+    ];
+    let on = |city: &PreparedCity, (with_ground, options): &(bool, AlignOptions)| {
+        let alignment = align(city, &survey(*with_ground).sfm, None, options, &|_, _, _| ());
+        (alignment.best, alignment.covariance, alignment.reason, alignment.search.samples)
+    };
+    let fresh: Vec<_> = jobs.iter().map(|job| on(&prepared(true), job)).collect();
+    let shared = prepared(true);
+    let in_order: Vec<_> = jobs.iter().map(|job| on(&shared, job)).collect();
+    let shared = prepared(true);
+    let mut backwards: Vec<_> = jobs.iter().rev().map(|job| on(&shared, job)).collect();
+    backwards.reverse();
+    assert_eq!(fresh, in_order);
+    assert_eq!(fresh, backwards);
+}
+
+#[test]
+fn the_covariance_is_about_the_centre_of_the_scene_and_holds_the_sigmas_of_the_freedoms() {
+    // So little is known beforehand that the data alone make the sigmas.
+    let wide = StartSigmas { position_m: 100.0, height_m: 100.0, heading_rad: 3.0, tilt_rad: 1.0, log_scale: 1.0 };
+    for fixed_scale in [None, Some(true_scale())] {
+        let start = Start::new(*start_off(&OFF).city_from_sfm(), wide).unwrap();
+        let alignment = run(true, &AlignOptions { start, fixed_scale, ..options(0) });
+        assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
+        let r = alignment.radius;
+        let middle = patches(&survey(true).sfm, None, &PatchOptions::default()).middle();
+        assert!((alignment.best.unwrap().apply(&middle) - alignment.center).norm() < 1e-6, "{}", alignment.center);
+        // Turns and scale as lengths at the radius: then the freedoms are the axes of the covariance.
+        let unit = [r, r, r, 1.0, 1.0, 1.0, r];
+        let in_metres = nalgebra::SMatrix::<f64, 7, 7>::from_fn(|i, j| alignment.covariance[i][j] * unit[i] * unit[j]);
+        let mut of_covariance: Vec<f64> = in_metres.symmetric_eigenvalues().iter().map(|v| v.max(0.0).sqrt()).collect();
+        let in_metres = |f: &cityweld::verdict::Freedom| match f.unit {
+            "m" => f.sigma,
+            "deg" => f.sigma.to_radians() * r,
+            _ => f.sigma * r,
+        };
+        let mut of_freedoms: Vec<f64> = alignment.freedoms.iter().map(in_metres).collect();
+        assert_eq!(of_freedoms.len(), 7, "{:?}", alignment.freedoms);
+        of_covariance.sort_by(f64::total_cmp);
+        of_freedoms.sort_by(f64::total_cmp);
+        for (a, b) in of_covariance.iter().zip(&of_freedoms) {
+            // The start's own share of the information is one in a million.
+            assert!((a - b).abs() < 1e-3 * b + 1e-9, "{of_covariance:?} {of_freedoms:?}");
+        }
+        // A block of some tens of metres: centimetres at its radius, and never better than the planes of the model.
+        assert!(r > 10.0 && r < 40.0 && of_freedoms[6] < 0.2, "{r} {of_freedoms:?}");
+    }
 }

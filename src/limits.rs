@@ -298,7 +298,13 @@ impl Default for Limits {
             grazing_deg: 83.0,
             upright_sin: 0.2,
             tells_floors_rad: 0.8,
-            exposure: ExposureLimits { start_m: 0.06, narrowest_gap_m: 0.5, open_m: 40.0, large_triangle_m2: 4.0 },
+            exposure: ExposureLimits {
+                start_m: 0.06,
+                narrowest_gap_m: 0.5,
+                joint_m: 0.01,
+                open_m: 40.0,
+                large_triangle_m2: 4.0,
+            },
             patches: PatchLimits {
                 most_points: 40_000,
                 fewest_points: 8,

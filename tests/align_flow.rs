@@ -2,7 +2,8 @@
 
 use cityweld::city::CityModel;
 use cityweld::geometry::{Point3, Start, StartSigmas, Vector3};
-use cityweld::planes::{PatchOptions, PreparedCity, patches};
+use cityweld::limits::Limits;
+use cityweld::planes::{PreparedCity, patches};
 use cityweld::reconstruction::Reconstruction;
 use cityweld::synthetic::{Block, CaptureOptions, CloudOptions, Move, Offset, Ring, Station, Survey, sfm_from_city};
 use cityweld::verdict::{Alignment, Verdict};
@@ -337,7 +338,7 @@ fn the_covariance_is_about_the_centre_of_the_scene_and_holds_the_sigmas_of_the_f
         let alignment = run(true, &AlignOptions { start, fixed_scale, ..options(0) });
         assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
         let r = alignment.radius;
-        let middle = patches(&survey(true).sfm, None, &PatchOptions::default()).middle();
+        let middle = patches(&survey(true).sfm, None, &Limits::default().patches).middle();
         assert!((alignment.best.unwrap().apply(&middle) - alignment.center).norm() < 1e-6, "{}", alignment.center);
         // Turns and scale as lengths at the radius: then the freedoms are the axes of the covariance.
         let unit = [r, r, r, 1.0, 1.0, 1.0, r];

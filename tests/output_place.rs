@@ -147,4 +147,10 @@ fn output_that_does_not_fit_is_an_error_and_leaves_nothing() {
     assert_status(&output, 2);
     assert!(stderr(&output).starts_with("error: cannot "), "{}", stderr(&output));
     assert_eq!(names(room.path()), Vec::<String>::new());
+
+    // Before any command is carried out.
+    let script = format!("ulimit -f 1; exec '{program}' align --help > help.txt");
+    let output = Command::new("sh").args(["-c", &script]).current_dir(room.path()).output().unwrap();
+    assert_status(&output, 2);
+    assert!(stderr(&output).starts_with("error: cannot write to standard output"), "{}", stderr(&output));
 }

@@ -36,7 +36,7 @@ pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<
 
     voice.warnings(&alignment.warnings);
     if session.common.json {
-        voice.result(&alignment_report(&alignment, &summary)?, Some(&plan.output))?;
+        voice.json(&alignment_report(&alignment, &summary)?, Some(&plan.output))?;
     } else {
         let table = summary::of_alignment(&alignment, &plan.output, &files, voice.seconds());
         voice.result(&table, Some(&plan.output))?;

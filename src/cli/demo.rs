@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use cityweld::export::{OutputKind, UnpackedFile};
+use cityweld::format::escaped;
 
 use super::align::carry_out;
 use super::args::{AlignArgs, CityUpArg, DemoArgs, UpArg};
@@ -100,8 +101,7 @@ fn align_args(sample: &Path) -> AlignArgs {
 }
 
 fn what_next(output: &Path) -> String {
-    let (out, sample) = (output.display(), output.join(SAMPLE_FOLDER));
-    let sample = sample.display();
+    let [out, sample] = [output, &output.join(SAMPLE_FOLDER)].map(|path| escaped(&path.to_string_lossy()).to_string());
     format!(
         "\nOpen {out}/scene.glb in any glTF viewer: the city in grey, the points in their colours, the cameras in red.\n\
          The same by hand:\n  \

@@ -43,7 +43,7 @@ pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     voice.warnings(&warnings.collect::<Vec<_>>());
     if session.common.json {
         let answer = serde_json::json!({ "output": args.output.to_string_lossy(), "files": written });
-        voice.result(&format!("{answer:#}\n"), Some(&args.output))?;
+        voice.json(&format!("{answer:#}\n"), Some(&args.output))?;
     } else {
         let table = summary::of_export(&title(&stored), &args.output, &written, voice.seconds());
         voice.result(&table, Some(&args.output))?;

@@ -9,6 +9,12 @@ use cityweld::export::{Discard, Output, OutputError, OutputKind, Replace};
 /// 128 + SIGINT, as shells have it.
 const EXIT_INTERRUPTED: i32 = 130;
 
+/// A limit on the size of files then fails the write that passes it, which is told, instead of ending the program.
+pub fn outlive_file_limits() {
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
 /// Knows what to remove when the user interrupts.
 #[derive(Clone, Default)]
 pub struct Interrupt {
@@ -21,9 +27,6 @@ impl Interrupt {
     pub fn listen() -> Interrupt {
         let interrupt = Interrupt::default();
         let heard = interrupt.clone();
-        // A limit on the size of files then fails the write that passes it, which is told, instead of ending the program.
-        #[cfg(unix)]
-        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
         // Without a handler the system ends the program at once, which is worse only for a half-made folder.
         let _ = ctrlc::set_handler(move || {
             heard.raised.store(true, Ordering::SeqCst);

@@ -46,7 +46,7 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
 fn tell(merged: &Merge, args: &MergeArgs, files: &[&str], session: &Session) -> Result<()> {
     let voice = &session.voice;
     if session.common.json {
-        voice.result(&merge_report(merged)?, Some(&args.output))
+        voice.json(&merge_report(merged)?, Some(&args.output))
     } else {
         voice.result(&summary::of_merge(merged, &args.output, files, voice.seconds()), Some(&args.output))
     }

@@ -20,8 +20,9 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use cityweld::export::{Output, OutputError, OutputKind, Replace};
+use cityweld::format::escaped;
 use clap::Parser;
-use clap::error::{ContextKind, ErrorKind};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use args::{Args, Command};
 use interrupt::Interrupt;
@@ -61,6 +62,7 @@ impl Session {
 
 /// Parses the command line and carries it out.
 pub fn run() -> ExitCode {
+    interrupt::outlive_file_limits();
     match Args::try_parse() {
         Ok(args) => carry_out(args),
         Err(message) => print(message),
@@ -73,12 +75,23 @@ fn print(mut message: clap::Error) -> ExitCode {
         // No value here begins with a dash; "to pass it as a value" would lead away.
         message.remove(ContextKind::Suggested);
     }
+    escape_what_was_typed(&mut message);
     let printed = message.print().and_then(|()| std::io::stdout().flush());
     match print::heard(printed) {
         Ok(()) => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(EXIT_BAD_INPUT)),
         Err(error) => {
             let _ = writeln!(std::io::stderr(), "error: cannot write to standard output: {error}");
             ExitCode::from(EXIT_BAD_INPUT)
+        }
+    }
+}
+
+/// A shell's `*` types names of files, which may hold anything.
+fn escape_what_was_typed(message: &mut clap::Error) {
+    let typed: Vec<_> = message.context().map(|(kind, value)| (kind, value.clone())).collect();
+    for (kind, value) in typed {
+        if let ContextValue::String(text) = value {
+            message.insert(kind, ContextValue::String(escaped(&text).to_string()));
         }
     }
 }

@@ -45,7 +45,7 @@ pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
     let warnings: Vec<String> = city.warnings.iter().map(ToString::to_string).collect();
     voice.warnings(&warnings);
     if session.common.json {
-        voice.result(&planes_report(&city, &planes, &names)?, written)?;
+        voice.json(&planes_report(&city, &planes, &names)?, written)?;
     } else {
         voice.result(&summary::of_city(&city, &planes, &names, written, voice.seconds()), written)?;
     }

@@ -1,10 +1,13 @@
 //! What is said on standard output and standard error. A reader that has gone away is no error.
+//!
+//! Names of files and what files hold may be anything; nothing of it steers the terminal.
 
 use std::io::{ErrorKind, Result, Write};
 use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Context;
+use cityweld::format::{escaped, escaped_json};
 
 use super::args::Common;
 use super::progress::Bar;
@@ -31,12 +34,31 @@ fn in_one_line(error: &anyhow::Error) -> String {
     })
 }
 
+/// The longest line, in characters; two paths as long as systems allow would go beyond. Chosen: a screen full of text.
+const LONGEST_LINE: usize = 2000;
+
+/// One line, whatever text from files and paths is in it. What is wrong stands at its beginning, and where at its end, so
+/// a name without end is cut in the middle.
+fn line_of(text: &str) -> String {
+    let line = escaped(text).to_string();
+    let at = |index| line.char_indices().nth(index).map(|(at, _)| at);
+    let Some(_) = at(LONGEST_LINE) else { return line };
+    let from_end = line.char_indices().rev().nth(LONGEST_LINE / 2 - 1).map(|(at, _)| at);
+    let (head, tail) = (at(LONGEST_LINE / 2).unwrap_or_default(), from_end.unwrap_or_default());
+    format!("{} ... {}", &line[..head], &line[tail..])
+}
+
 impl Voice {
     pub fn new(common: &Common) -> Voice {
         Voice { bar: Bar::new(common.quiet), quiet: common.quiet, verbose: common.verbose, begun: Instant::now() }
     }
 
-    /// The result, on standard output. `written` is what stands on the disk whether or not that succeeds.
+    /// The result as JSON, on standard output. `written` is as for [`Voice::result`].
+    pub fn json(&self, json: &str, written: Option<&Path>) -> anyhow::Result<()> {
+        self.result(&escaped_json(json), written)
+    }
+
+    /// The result, on standard output; names in it are escaped already. `written` is what stands on the disk whether or not that succeeds.
     pub fn result(&self, text: &str, written: Option<&Path>) -> anyhow::Result<()> {
         self.bar.clear();
         let mut out = std::io::stdout().lock();
@@ -75,13 +97,24 @@ impl Voice {
 
     fn line(&self, text: &str) {
         self.bar.clear();
-        let _ = writeln!(std::io::stderr(), "{text}");
+        let _ = writeln!(std::io::stderr(), "{}", line_of(text));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_stays_one_and_ends() {
+        assert_eq!(line_of("no file: a\nerror: \x1b[2J"), "no file: a\\u{a}error: \\u{1b}[2J");
+        let long = format!("`{}` is no index (ß.obj:7)", "ü".repeat(1_000_000));
+        let line = line_of(&long);
+        assert!(line.starts_with("`üü") && line.ends_with("ü` is no index (ß.obj:7)"), "{line}");
+        assert_eq!(line.chars().count(), LONGEST_LINE + 5);
+        let just = "x".repeat(LONGEST_LINE);
+        assert_eq!(line_of(&just), just);
+    }
 
     #[test]
     fn an_error_tells_each_of_its_causes_once() {

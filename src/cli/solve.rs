@@ -24,7 +24,7 @@ pub fn run(args: &SolveArgs, session: &Session) -> Result<Outcome> {
         bail!("this is {}, expected a problem (assets/problem.schema.json describes one): {path}", kind.words());
     }
     let answer = solve_json(&text);
-    session.voice.result(&format!("{}\n", answer_json(&answer)), None)?;
+    session.voice.json(&format!("{}\n", answer_json(&answer)), None)?;
     Ok(match answer {
         Ok(_) => Outcome::Good,
         Err(Refusal::Degenerate(_)) => Outcome::Doubtful,

@@ -1,29 +1,44 @@
 //! Results as a short table for people.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 use std::path::Path;
 
 use cityweld::city::CityModel;
 use cityweld::export::Lie;
+use cityweld::format::escaped;
 use cityweld::merging::{Account, Merge};
 use cityweld::planes::CityPlanes;
 use cityweld::verdict::{Alignment, Freedom, Verdict};
 
+/// A title and rows of a name and a value; names of files and parts are in both.
+struct Table {
+    text: String,
+    name_width: usize,
+}
+
+impl Table {
+    fn new(title: &str, name_width: usize) -> Table {
+        Table { text: format!("{}\n", escaped(title)), name_width }
+    }
+
+    fn row(&mut self, name: &str, value: impl Display) {
+        let (name, value) = (escaped(name).to_string(), value.to_string());
+        let _ = writeln!(self.text, "  {name:<width$} {}", escaped(&value), width = self.name_width);
+    }
+}
+
 /// Verdict, reason, scale, freedoms, support, files and time.
 pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], seconds: f64) -> String {
-    let mut text = format!("{}: {}\n", alignment.verdict.word(), alignment.reason);
-    let mut row = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<13} {value}");
-    };
+    let mut table = Table::new(&format!("{}: {}", alignment.verdict.word(), alignment.reason), 13);
     if let Some(best) = &alignment.best {
         let what = if alignment.verdict == Verdict::Aligned { "scale" } else { "scale (best)" };
-        row(what, format!("{:.6} m per reconstruction unit", best.scale));
+        table.row(what, format!("{:.6} m per reconstruction unit", best.scale));
     }
     for (index, freedom) in alignment.freedoms.iter().enumerate() {
-        row(if index == 0 { "freedoms" } else { "" }, freedom_line(freedom));
+        table.row(if index == 0 { "freedoms" } else { "" }, freedom_line(freedom));
     }
     let support = &alignment.support;
-    row(
+    table.row(
         "support",
         format!(
             "{} of {} points on {} planes, median {:.3} m, rms {:.3} m",
@@ -32,11 +47,11 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
     );
     for (index, other) in alignment.alternatives.iter().enumerate() {
         let name = if index == 0 { "alternatives" } else { "" };
-        row(name, format!("{} (weight {:.3})", other.differs, other.weight));
+        table.row(name, format!("{} (weight {:.3})", other.differs, other.weight));
     }
-    row("written", format!("{} ({})", output.display(), files.join(", ")));
-    row("time", format!("{seconds:.1} s"));
-    text
+    table.row("written", format!("{} ({})", output.display(), files.join(", ")));
+    table.row("time", format!("{seconds:.1} s"));
+    table.text
 }
 
 fn freedom_line(freedom: &Freedom) -> String {
@@ -51,21 +66,19 @@ fn freedom_line(freedom: &Freedom) -> String {
 
 /// What the program sees in a city.
 pub fn of_city(city: &CityModel, planes: &CityPlanes, files: &[String], output: Option<&Path>, seconds: f64) -> String {
-    let mut text = format!(
-        "{}: {} objects, {} facets, {} triangles, {} planes\n",
+    let title = format!(
+        "{}: {} objects, {} facets, {} triangles, {} planes",
         files.join(" + "),
         city.objects.len(),
         city.facets.len(),
         city.triangles.len(),
         planes.planes.len()
     );
-    let mut row = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<11} {value}");
-    };
+    let mut table = Table::new(&title, 11);
     if let Some((low, high)) = city.bounds() {
         let (low, high) = (low + city.origin, high + city.origin);
         for (axis, name) in ["x", "y", "z (up)"].into_iter().enumerate() {
-            row(name, format!("{:.2} to {:.2} m", low[axis], high[axis]));
+            table.row(name, format!("{:.2} to {:.2} m", low[axis], high[axis]));
         }
     }
     let kinds =
@@ -76,37 +89,34 @@ pub fn of_city(city: &CityModel, planes: &CityPlanes, files: &[String], output: 
             count += 1;
             area_m2 += plane.area_m2;
         }
-        row(name, format!("{count} planes, {area_m2:.0} m2"));
+        table.row(name, format!("{count} planes, {area_m2:.0} m2"));
     }
     if let Some(output) = output {
-        row("written", output.display().to_string());
+        table.row("written", output.display());
     }
-    row("time", format!("{seconds:.1} s"));
-    text
+    table.row("time", format!("{seconds:.1} s"));
+    table.text
 }
 
 /// Verdict, parts, ledger, files and time.
 pub fn of_merge(merge: &Merge, output: &Path, files: &[&str], seconds: f64) -> String {
-    let mut text = format!("{}: {}\n", merge.verdict.word(), merge.reason);
-    let mut row = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<13} {value}");
-    };
+    let mut table = Table::new(&format!("{}: {}", merge.verdict.word(), merge.reason), 13);
     for part in &merge.parts {
         let place = match (&part.merged_from_part, &part.reason) {
             (Some(pose), _) => format!("placed, scale {:.6}", pose.scale),
             (None, reason) => format!("left out: {}", reason.as_deref().unwrap_or("not placed")),
         };
-        row(&part.name, place);
+        table.row(&part.name, place);
     }
     let accounts = [
         ("images", &merge.ledger.images),
         ("points", &merge.ledger.points),
         ("observations", &merge.ledger.observations),
     ];
-    accounts.into_iter().for_each(|(name, account)| row(name, account_line(account)));
-    row("written", format!("{} ({})", output.display(), files.join(", ")));
-    row("time", format!("{seconds:.1} s"));
-    text
+    accounts.into_iter().for_each(|(name, account)| table.row(name, account_line(account)));
+    table.row("written", format!("{} ({})", output.display(), files.join(", ")));
+    table.row("time", format!("{seconds:.1} s"));
+    table.text
 }
 
 fn account_line(account: &Account) -> String {
@@ -119,5 +129,8 @@ fn account_line(account: &Account) -> String {
 
 /// What was written again.
 pub fn of_export(title: &str, output: &Path, files: &[&str], seconds: f64) -> String {
-    format!("{title}\n  written       {} ({})\n  time          {seconds:.1} s\n", output.display(), files.join(", "))
+    let mut table = Table::new(title, 13);
+    table.row("written", format!("{} ({})", output.display(), files.join(", ")));
+    table.row("time", format!("{seconds:.1} s"));
+    table.text
 }

@@ -100,7 +100,7 @@ mod tests {
         for motion in [Motion::Rigid, Motion::Similarity] {
             let scene = made.scene(&Offset::default(), motion);
             let widest_m = made.limits.search.gate_units * scene.unit_m * scene.prior.most_scale();
-            assert!(scene.grid.reach_m() >= widest_m, "{} {widest_m}", scene.grid.reach_m());
+            assert!(scene.wide_grid.reach_m() >= widest_m, "{} {widest_m}", scene.wide_grid.reach_m());
         }
     }
 }

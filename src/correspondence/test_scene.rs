@@ -3,7 +3,7 @@
 use super::scene::Scene;
 use crate::geometry::{Point3, Similarity, Start, StartSigmas, Vector3};
 use crate::limits::Limits;
-use crate::planes::{PatchOptions, Patches, PreparedCity, Upright, patches};
+use crate::planes::{Patches, PreparedCity, Upright, patches};
 use crate::robust::Motion;
 use crate::synthetic::{Block, CaptureOptions, CloudOptions, Move, Offset, Ring, Station, Survey};
 
@@ -25,7 +25,7 @@ impl Made {
     /// `block` is what the city knows; the survey may be of more or less.
     pub fn new(block: Block, survey: Survey) -> Made {
         let city = PreparedCity::new(block.city().unwrap());
-        let patches = patches(&survey.sfm, None, &PatchOptions::default());
+        let patches = patches(&survey.sfm, None, &Limits::default().patches);
         Made { block, survey, city, patches, limits: Limits::default() }
     }
 

@@ -172,7 +172,9 @@ mod tests {
         let refiner = Refiner::new(&scene);
         let panel = scene.votes.panel(1500);
         let shifted = made.pose(&scene, &Offset { shift_m: [0.0, 0.5, 0.0], ..Offset::default() });
-        let stuck = refiner.refine(&panel, &shifted, &BASIN_GATES_UNITS.map(|g| g * scene.unit_m)).city_from_level;
+        let stuck = refiner
+            .refine(&panel, &shifted, &scene.limits.walk.basin_gates_units.map(|g| g * scene.unit_m))
+            .city_from_level;
         let off = |pose: &Similarity| made.error(&scene, pose).level_m;
         assert!(off(&stuck) > 0.4, "{}", off(&stuck));
         let hopped = hop(&refiner, &panel, &stuck);

@@ -8,6 +8,21 @@ pub fn escaped(text: &str) -> impl fmt::Display + '_ {
     Escaped(text)
 }
 
+/// JSON text with what would steer a terminal written as JSON's own escapes, as in `\u202e`: it says the same.
+///
+/// JSON leaves such characters plain in its strings, all but the first 32; elsewhere it has none but line ends.
+pub fn escaped_json(json: &str) -> String {
+    let mut escaped = String::with_capacity(json.len());
+    for c in json.chars() {
+        if steers(c) && c != '\n' {
+            escaped.push_str(&format!("\\u{:04x}", u32::from(c)));
+        } else {
+            escaped.push(c);
+        }
+    }
+    escaped
+}
+
 struct Escaped<'a>(&'a str);
 
 impl fmt::Display for Escaped<'_> {
@@ -43,6 +58,15 @@ mod tests {
         assert_eq!(shown("\u{9b}31m \u{7f}"), "\\u{9b}31m \\u{7f}");
         assert_eq!(shown("a\u{2028}b\u{2029}"), "a\\u{2028}b\\u{2029}");
         assert_eq!(shown("\u{202e}gpj.\u{2066}\u{200f}"), "\\u{202e}gpj.\\u{2066}\\u{200f}");
+    }
+
+    #[test]
+    fn json_says_the_same_without_steering_a_terminal() {
+        let name = "a\u{202e}gpj.\u{9b}31m\x1b[2J\n\u{7f} Straße";
+        let json = serde_json::to_string_pretty(&[name]).unwrap();
+        let shown = escaped_json(&json);
+        assert_eq!(shown, "[\n  \"a\\u202egpj.\\u009b31m\\u001b[2J\\n\\u007f Straße\"\n]");
+        assert_eq!(serde_json::from_str::<[String; 1]>(&shown).unwrap(), [name]);
     }
 
     #[test]

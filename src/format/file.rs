@@ -3,7 +3,7 @@
 //! A pipe would be waited for, a device read without end. Names come from the user, but also out of files (the buffers of
 //! a glTF scene, the photographs of a reconstruction), and archives can hold pipes.
 
-use std::fs::{File, FileType, OpenOptions};
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
@@ -11,12 +11,21 @@ use std::path::Path;
 /// what is longer is taken for a file of holes or a device that calls itself regular.
 pub const LARGEST_MODEL_BYTES: u64 = 16 << 30;
 
-/// Opens a regular file; a pipe, device, socket or folder is refused without waiting for it.
+/// Files from this length on are asked how much of them is on the disk, bytes. Chosen: less than any machine has for one.
+const LEAST_WITH_HOLES: u64 = 256 << 20;
+
+/// How many times shorter than its length a file may lie on a disk that compresses. Derived: LZ4, the quickest and commonest,
+/// comes to 255; models come to 10.
+const BEST_COMPRESSION: u64 = 255;
+
+/// Opens a regular file; a pipe, device, socket or folder is refused without waiting for it, and a file that is all holes.
 pub fn open_regular(path: &Path) -> Result<File> {
     // Before opening, which alone makes some devices move; and after, as the name may have changed hands in between.
-    refuse_irregular(std::fs::metadata(path)?.file_type())?;
+    refuse_irregular(&std::fs::metadata(path)?)?;
     let file = without_waiting().read(true).open(path)?;
-    refuse_irregular(file.metadata()?.file_type())?;
+    let found = file.metadata()?;
+    refuse_irregular(&found)?;
+    refuse_holes(&found)?;
     Ok(file)
 }
 
@@ -50,16 +59,36 @@ pub fn is_there(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|found| !found.is_dir())
 }
 
-fn refuse_irregular(found: FileType) -> Result<()> {
+fn refuse_irregular(found: &Metadata) -> Result<()> {
     if found.is_file() {
         return Ok(());
     }
-    let what = if found.is_dir() { "a folder" } else { special(found) };
+    let what = if found.is_dir() { "a folder" } else { special(found.file_type()) };
     Err(Error::new(ErrorKind::InvalidInput, format!("it is {what}, expected a regular file")))
 }
 
+/// A length costs nothing to claim: what was set aside for it and never written reads as zeros.
+fn refuse_holes(found: &Metadata) -> Result<()> {
+    if found.len() < LEAST_WITH_HOLES || bytes_on_disk(found) >= found.len() / BEST_COMPRESSION {
+        return Ok(());
+    }
+    let message = format!("it says {} bytes, of which {} were ever written", found.len(), bytes_on_disk(found));
+    Err(Error::new(ErrorKind::InvalidData, message))
+}
+
 #[cfg(unix)]
-fn special(found: FileType) -> &'static str {
+fn bytes_on_disk(found: &Metadata) -> u64 {
+    // In units of 512 bytes, whatever the blocks of the disk (POSIX, sys/stat.h).
+    512 * std::os::unix::fs::MetadataExt::blocks(found)
+}
+
+#[cfg(not(unix))]
+fn bytes_on_disk(found: &Metadata) -> u64 {
+    found.len()
+}
+
+#[cfg(unix)]
+fn special(found: std::fs::FileType) -> &'static str {
     use std::os::unix::fs::FileTypeExt;
     if found.is_fifo() {
         "a pipe (save what comes out of it to a file)"
@@ -71,16 +100,17 @@ fn special(found: FileType) -> &'static str {
 }
 
 #[cfg(not(unix))]
-fn special(_: FileType) -> &'static str {
+fn special(_: std::fs::FileType) -> &'static str {
     "a device"
 }
 
 /// Opening a pipe waits for who writes into it, unless told not to; a terminal shall not become the program's own.
 #[cfg(unix)]
 fn without_waiting() -> OpenOptions {
+    use rustix::fs::OFlags;
     use std::os::unix::fs::OpenOptionsExt;
     let mut options = OpenOptions::new();
-    options.custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY);
+    options.custom_flags((OFlags::NONBLOCK | OFlags::NOCTTY).bits().cast_signed());
     options
 }
 
@@ -107,6 +137,18 @@ mod tests {
     #[test]
     fn a_length_that_no_memory_holds_is_an_error() {
         assert!(read_at_most(std::io::empty(), u64::MAX / 4, u64::MAX).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_of_holes_is_refused_before_it_is_read() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), b"v 0 0 0\n").unwrap();
+        file.as_file().set_len(LARGEST_MODEL_BYTES).unwrap();
+        let error = read_regular(file.path(), LARGEST_MODEL_BYTES).unwrap_err();
+        assert!(error.to_string().contains("ever written"), "{error}");
+        file.as_file().set_len(1 << 20).unwrap();
+        assert_eq!(read_regular(file.path(), LARGEST_MODEL_BYTES).unwrap().len(), 1 << 20);
     }
 
     #[cfg(unix)]

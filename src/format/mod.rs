@@ -13,7 +13,7 @@ mod start;
 mod text;
 
 pub use alignment::{Spread, StoredAlignment, read_alignment};
-pub use escape::escaped;
+pub use escape::{escaped, escaped_json};
 pub use kind::JsonKind;
 pub use placement::PlacementError;
 pub use start::read_start;

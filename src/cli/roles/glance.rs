@@ -1,12 +1,12 @@
 //! What lies at a path, as far as names and the first bytes tell.
 
 use std::collections::VecDeque;
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use cityweld::format::JsonKind;
 use cityweld::format::colmap::missing_files;
+use cityweld::format::file::open_regular;
 use cityweld::format::gltf::is_glb;
 use cityweld::format::ply::is_ply;
 
@@ -214,7 +214,7 @@ fn kind_of_long(text: &str) -> Option<JsonKind> {
 
 fn start_of(path: &Path, bytes: u64) -> Vec<u8> {
     let mut start = Vec::new();
-    let _ = File::open(path).and_then(|file| file.take(bytes).read_to_end(&mut start));
+    let _ = open_regular(path).and_then(|file| file.take(bytes).read_to_end(&mut start));
     start
 }
 
@@ -231,4 +231,19 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
     paths.sort();
     paths
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn what_would_be_waited_for_is_not_looked_into() {
+        let folder = tempfile::tempdir().unwrap();
+        // As a device that calls itself a regular file: /proc/kmsg, which is not for everybody to read.
+        let pipe = folder.path().join("pipe.png");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(start_of(&pipe, LOOKED_AT).is_empty() && !is_grey(&pipe));
+    }
 }

@@ -38,13 +38,15 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
         table.row(if index == 0 { "freedoms" } else { "" }, freedom_line(freedom));
     }
     let support = &alignment.support;
-    table.row(
-        "support",
-        format!(
-            "{} of {} points on {} planes, median {:.3} m, rms {:.3} m",
-            support.trusted_points, support.points, support.planes, support.median_m, support.rms_m
-        ),
-    );
+    if support.trusted_points > 0 {
+        table.row(
+            "support",
+            format!(
+                "{} of {} points on {} planes, median {:.3} m, rms {:.3} m",
+                support.trusted_points, support.points, support.planes, support.median_m, support.rms_m
+            ),
+        );
+    }
     for (index, other) in alignment.alternatives.iter().enumerate() {
         let name = if index == 0 { "alternatives" } else { "" };
         table.row(name, format!("{} (weight {:.3})", other.differs, other.weight));
@@ -55,6 +57,10 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
 }
 
 fn freedom_line(freedom: &Freedom) -> String {
+    if freedom.given {
+        let mark = if freedom.determined { "" } else { "   CONTRADICTED by the data" };
+        return format!("{:<32} given{mark}", freedom.name);
+    }
     let sigma = match freedom.unit {
         // One sigma of the logarithm is a share of the scale itself.
         "1" => format!("{:.3} %", 100.0 * freedom.sigma),

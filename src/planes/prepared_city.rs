@@ -218,6 +218,19 @@ mod tests {
     }
 
     #[test]
+    fn a_plane_between_whose_facets_a_box_lies_is_not_in_sight() {
+        // One house of two wings, 10 m apart, whose fronts lie in one plane.
+        let wing = House::flat([6.0, 9.0, 7.0]);
+        let faces = [wing.clone(), wing.at([16.0, 0.0, 0.0])].into_iter().flat_map(|wing| wing.faces).collect();
+        let city = prepared(&Block::new(vec![House { faces }]));
+        let [low, high] =
+            [[10.0, -1.0, 1.0], [12.0, 10.0, 9.0]].map(|x| Point3::from(Vector3::from(x) - city.model.origin));
+        assert!(city.planes_in_sight(&low, &high).is_empty());
+        let (low, high) = city.model.bounds().unwrap();
+        assert_eq!(city.planes_in_sight(&low, &high).len(), city.planes().planes.len());
+    }
+
+    #[test]
     fn a_model_whose_facets_were_taken_away_by_hand_is_that_of_the_facets_that_are_left() {
         let mut model = row().city().unwrap();
         model.facets.remove(0);

@@ -7,10 +7,11 @@
 use rayon::prelude::*;
 
 use super::lead::{ballot, lead_sigmas};
+use super::pose_search::largest_shift;
 use super::refine::{Refined, Refiner};
 use super::scene::Scene;
-use super::search::{Hypotheses, largest_shift};
-use super::walk::{hop, slide};
+use super::search::Hypotheses;
+use super::walk::{hop, settle, slide};
 use crate::geometry::Similarity;
 use crate::limits::StageLimits;
 
@@ -81,7 +82,7 @@ pub fn settled(refiner: &Refiner, pose: &Similarity) -> Refined {
     let scene = refiner.scene;
     let (firm, all) = (probes(scene.votes.firm), probes(scene.votes.probes.len()));
     let sharp = refiner.sharpen(&firm, pose, scene.unit_m);
-    refiner.settle(&all, sharp, scene.unit_m, scene.limits.walk.settling_units * scene.unit_m)
+    settle(refiner, &all, sharp, scene.unit_m, scene.limits.walk.settling_units * scene.unit_m)
 }
 
 fn compared_with_the_best(mut candidates: Vec<Candidate>, scene: &Scene) -> Vec<Candidate> {

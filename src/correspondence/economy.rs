@@ -11,7 +11,7 @@
 //!              the machine on which the constants were measured (a measured time here would undo `same seed, same bytes`)
 //! Source       number of trials: Fischler and Bolles 1981; Ramalingam et al. (ECCV 2010), section 5, weigh 3 planes against 6 so
 
-use super::search::PoseSearch;
+use super::pose_search::PoseSearch;
 use crate::limits::SearchLimits;
 use crate::robust::Random;
 use crate::solvers::Configuration;

@@ -13,10 +13,9 @@ use rayon::prelude::*;
 
 use super::scene::Scene;
 use super::scoring::Mover;
-use super::walk::{Stride, walk};
 use crate::geometry::{Point3, Similarity};
 use crate::planes::Hit;
-use crate::robust::{Chart, Direction, Motion, NormalEquations, tukey_weight};
+use crate::robust::{Chart, Motion, NormalEquations, tukey_weight};
 
 /// A refined pose and what holds it.
 #[derive(Clone, Debug)]
@@ -33,7 +32,7 @@ pub struct Refiner<'a> {
     /// How poses may move.
     pub motion: Motion,
     /// Noise of one point across its plane, metres.
-    point_sigma_m: f64,
+    pub point_sigma_m: f64,
 }
 
 /// Probes per task.
@@ -97,51 +96,6 @@ impl<'a> Refiner<'a> {
             refined = self.refine(panel, &pose, &[narrow_m]);
         }
         refined
-    }
-
-    /// Moves `refined`, made without loose points, along what it leaves loose to where most planes find points, as far as `reach_m`, and
-    /// sharpens with all of `panel`.
-    ///
-    /// The few points of a grazed roof that alone hold a height count for nothing among the votes of the walls; but by the
-    /// root of its points every plane has a say, and at the right height several find theirs at once.
-    pub fn settle(&self, panel: &[u32], refined: Refined, gate_m: f64, reach_m: f64) -> Refined {
-        // A finer step than the gate of a loose point is wide: none may fall between.
-        let step_m = self.point_sigma_m;
-        let steps = (reach_m / step_m).ceil() as i32;
-        let spectrum = refined.chart.spectrum(&refined.equations.full());
-        let held_m = self.scene.limits.refinement.held_m;
-        let mut pose = refined.city_from_level;
-        for direction in spectrum.directions().iter().filter(|d| d.sigma_m > held_m) {
-            let free = self.without_unmoved(panel, &refined.chart, &pose, direction, gate_m);
-            let support = |pose: &Similarity| (self.support(&free, pose, gate_m), *pose);
-            let stride = Stride { direction: *direction, offsets_m: Stride::even(step_m, steps) };
-            pose = walk(&self.scene.prior, &refined.chart, support(&pose), &[stride], support).1;
-        }
-        self.sharpen(panel, &pose, gate_m)
-    }
-
-    /// Points on planes, each plane counting by the root of its points.
-    fn support(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> f64 {
-        let rows = self.probes_on_planes(panel, pose, gate_m);
-        rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(|p| p.iter().map(|r| r.weight).sum::<f64>().sqrt()).sum()
-    }
-
-    /// The panel without the loose points on planes that a motion along `direction` does not leave: they are explained already, and
-    /// stray ones beside a wall would hold a roof that is not there.
-    fn without_unmoved(
-        &self,
-        panel: &[u32],
-        chart: &Chart,
-        pose: &Similarity,
-        direction: &Direction,
-        gate_m: f64,
-    ) -> Vec<u32> {
-        let unmoved = self.scene.limits.walk.unmoved_share;
-        let mut stays = vec![false; self.scene.votes.probes.len()];
-        for row in self.probes_on_planes(panel, pose, gate_m) {
-            stays[row.probe as usize] = chart.row(&row.place, &row.hit.normal).dot(&direction.unit).abs() < unmoved;
-        }
-        panel.iter().copied().filter(|&i| (i as usize) < self.scene.votes.firm || !stays[i as usize]).collect()
     }
 
     /// The same pose with its information, nothing moved.
@@ -214,6 +168,7 @@ fn robust_sigma(rows: &[ProbeOnPlane]) -> f64 {
 mod tests {
     use super::*;
     use crate::correspondence::test_scene::{Made, all, firm, walls_alone, with_points};
+    use crate::correspondence::walk::{planes_with_points, settle};
     use crate::geometry::Vector3;
     use crate::synthetic::{Block, CloudOptions, House, Offset};
 
@@ -257,7 +212,7 @@ mod tests {
             let refiner = Refiner::new(&scene);
             let first = refined(&refiner, &scene.prior.expected());
             let sharp = refiner.sharpen(&firm(&scene), &first.city_from_level, scene.unit_m);
-            let settled = refiner.settle(&all(&scene), sharp.clone(), scene.unit_m, 1.0);
+            let settled = settle(&refiner, &all(&scene), sharp.clone(), scene.unit_m, 1.0);
             for pose in [&first, &sharp, &settled].map(|refined| refined.city_from_level) {
                 assert_eq!(pose.scale.to_bits(), 1f64.to_bits(), "{pose:?}");
                 let given = scene.votes.level_from_sfm.scale;
@@ -336,7 +291,7 @@ mod tests {
                 let sharp = refiner.sharpen(&firm(&scene), &off, scene.unit_m);
                 let left_m = made.rise_m(&scene, &sharp.city_from_level);
                 assert!((left_m - rise_m).abs() < 0.02, "walls hold no height: {left_m}");
-                let settled = refiner.settle(&all(&scene), sharp, scene.unit_m, 1.2);
+                let settled = settle(&refiner, &all(&scene), sharp, scene.unit_m, 1.2);
                 let error = made.error(&scene, &settled.city_from_level);
                 assert!(error.up_m < 0.02 && error.level_m < 0.02, "{error:?} from {rise_m}");
             }
@@ -357,9 +312,9 @@ mod tests {
         let refiner = Refiner::new(&scene);
         let sharp = refiner.sharpen(&firm(&scene), &made.truth(&scene), scene.unit_m);
         let on_roof = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, 0.6], ..Offset::default() });
-        let support = |pose: &Similarity| refiner.support(&all(&scene), pose, scene.unit_m);
+        let support = |pose: &Similarity| planes_with_points(&refiner, &all(&scene), pose, scene.unit_m);
         assert!(support(&on_roof) > support(&sharp.city_from_level), "they tempt");
-        let settled = refiner.settle(&all(&scene), sharp, scene.unit_m, 1.2);
+        let settled = settle(&refiner, &all(&scene), sharp, scene.unit_m, 1.2);
         let rise_m = made.rise_m(&scene, &settled.city_from_level);
         assert!(rise_m.abs() < 0.02, "{rise_m}");
     }

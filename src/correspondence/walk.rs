@@ -4,7 +4,7 @@
 //! Method       the pose is moved by each offset along the direction and valued, in parallel; the best wins, the nearest of equals.
 //!              Three walks use it: along what the data hold loosely, by the score ([`slide`]); along all directions at once into
 //!              neighbouring basins, each place refined first ([`hop`]; basin hopping, Wales and Doye 1997, with fixed moves instead of random ones);
-//!              and along what nothing holds, by the planes that find points (`Refiner::settle`)
+//!              and along what nothing holds, by the planes that find points ([`settle`])
 //! Why          a wall's top and foot tell the height softly, which says nothing to a least-squares step; a prior inside Gauss-Newton
 //!              would drag the pose off its facets. And facades have several parallel planes some decimetres apart: a cloud may
 //!              settle with some of its patches one plane off, held as firmly as at the right place
@@ -12,7 +12,7 @@
 use rayon::prelude::*;
 
 use super::prior::Prior;
-use super::refine::Refiner;
+use super::refine::{Refined, Refiner};
 use super::scene::Scene;
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Direction, Spectrum};
@@ -101,6 +101,51 @@ pub fn hop(refiner: &Refiner, panel: &[u32], pose: &Similarity) -> Similarity {
         from = refined(&best.1).1;
     }
     best.1
+}
+
+/// Moves `refined`, made without loose points, along what it leaves loose to where most planes find points, as far as `reach_m`, and
+/// sharpens with all of `panel`.
+///
+/// The few points of a grazed roof that alone hold a height count for nothing among the votes of the walls; but by the
+/// root of its points every plane has a say, and at the right height several find theirs at once.
+pub fn settle(refiner: &Refiner, panel: &[u32], refined: Refined, gate_m: f64, reach_m: f64) -> Refined {
+    // A finer step than the gate of a loose point is wide: none may fall between.
+    let step_m = refiner.point_sigma_m;
+    let steps = (reach_m / step_m).ceil() as i32;
+    let spectrum = refined.chart.spectrum(&refined.equations.full());
+    let held_m = refiner.scene.limits.refinement.held_m;
+    let mut pose = refined.city_from_level;
+    for direction in spectrum.directions().iter().filter(|d| d.sigma_m > held_m) {
+        let free = without_unmoved(refiner, panel, &refined.chart, &pose, direction, gate_m);
+        let support = |pose: &Similarity| (planes_with_points(refiner, &free, pose, gate_m), *pose);
+        let stride = Stride { direction: *direction, offsets_m: Stride::even(step_m, steps) };
+        pose = walk(&refiner.scene.prior, &refined.chart, support(&pose), &[stride], support).1;
+    }
+    refiner.sharpen(panel, &pose, gate_m)
+}
+
+/// Points on planes, each plane counting by the root of its points.
+pub(super) fn planes_with_points(refiner: &Refiner, panel: &[u32], pose: &Similarity, gate_m: f64) -> f64 {
+    let rows = refiner.probes_on_planes(panel, pose, gate_m);
+    rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(|p| p.iter().map(|r| r.weight).sum::<f64>().sqrt()).sum()
+}
+
+/// The panel without the loose points on planes that a motion along `direction` does not leave: they are explained already, and
+/// stray ones beside a wall would hold a roof that is not there.
+fn without_unmoved(
+    refiner: &Refiner,
+    panel: &[u32],
+    chart: &Chart,
+    pose: &Similarity,
+    direction: &Direction,
+    gate_m: f64,
+) -> Vec<u32> {
+    let unmoved = refiner.scene.limits.walk.unmoved_share;
+    let mut stays = vec![false; refiner.scene.votes.probes.len()];
+    for row in refiner.probes_on_planes(panel, pose, gate_m) {
+        stays[row.probe as usize] = chart.row(&row.place, &row.hit.normal).dot(&direction.unit).abs() < unmoved;
+    }
+    panel.iter().copied().filter(|&i| (i as usize) < refiner.scene.votes.firm || !stays[i as usize]).collect()
 }
 
 #[cfg(test)]
@@ -225,7 +270,7 @@ mod tests {
             for (name, found) in [
                 ("slide", slid(&refiner, &pose)),
                 ("hop", hop(&refiner, &scene.votes.panel(1000), &pose)),
-                ("settle", refiner.settle(&all(&scene), held.clone(), scene.unit_m, 4.0).city_from_level),
+                ("settle", settle(&refiner, &all(&scene), held.clone(), scene.unit_m, 4.0).city_from_level),
             ] {
                 assert!(scene.prior.reaches(&found), "{name}: {found:?} from {pose:?}");
                 assert_eq!(found.scale.to_bits(), 1f64.to_bits());

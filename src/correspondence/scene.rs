@@ -52,7 +52,7 @@ impl<'a> Scene<'a> {
             return None;
         }
         let grid = if gate_m <= self.narrow_grid.reach_m() { &self.narrow_grid } else { &self.wide_grid };
-        grid.nearest(probe, gate_m, self.city)
+        self.city.nearest(grid, probe, gate_m)
     }
 
     /// To the city's local frame.

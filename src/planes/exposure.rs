@@ -8,7 +8,7 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use super::prepared_city::PreparedCity;
+use super::surface::CitySurface;
 use crate::geometry::{Point3, Vector3};
 use crate::limits::ExposureLimits;
 
@@ -23,16 +23,17 @@ const HIDDEN: u8 = 1;
 const EXPOSED: u8 = 2;
 
 impl Exposure {
-    pub fn new(triangles: usize, limits: &ExposureLimits) -> Exposure {
+    pub fn new(surface: &CitySurface, limits: &ExposureLimits) -> Exposure {
+        let triangles = surface.model.triangles.len();
         Exposure { known: (0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect(), limits: *limits }
     }
 
     /// Two threads that ask at once find the same.
-    pub fn of(&self, triangle: u32, city: &PreparedCity) -> bool {
+    pub fn of(&self, triangle: u32, surface: &CitySurface) -> bool {
         let known = &self.known[triangle as usize];
         match known.load(Ordering::Relaxed) {
             UNKNOWN => {
-                let exposed = is_exposed(triangle, city, &self.limits);
+                let exposed = is_exposed(triangle, surface, &self.limits);
                 known.store(if exposed { EXPOSED } else { HIDDEN }, Ordering::Relaxed);
                 exposed
             }
@@ -41,21 +42,21 @@ impl Exposure {
     }
 }
 
-fn is_exposed(triangle: u32, city: &PreparedCity, limits: &ExposureLimits) -> bool {
-    let normal = |t: u32| city.model.facets[city.facet_of(t).0 as usize].plane.normal;
+fn is_exposed(triangle: u32, surface: &CitySurface, limits: &ExposureLimits) -> bool {
+    let normal = |t: u32| surface.normal_of(t);
     let ends_in_the_open =
-        |from: &Point3<f64>, direction: &Vector3<f64>| match city.rays().first_hit(from, direction, limits.open_m) {
+        |from: &Point3<f64>, direction: &Vector3<f64>| match surface.rays().first_hit(from, direction, limits.open_m) {
             None => true,
             Some(sight) => {
                 let is_back = |t: u32| normal(t).dot(direction) >= 0.0;
                 let leaves_a_solid =
-                    || city.rays().first_hit_of(is_back, from, direction, sight.distance + limits.joint_m).is_some();
+                    || surface.rays().first_hit_of(is_back, from, direction, sight.distance + limits.joint_m).is_some();
                 sight.distance > limits.narrowest_gap_m && !is_back(sight.triangle) && !leaves_a_solid()
             }
         };
     let outward = normal(triangle);
     let directions = fan(&outward);
-    places(&city.corners(triangle), limits.large_triangle_m2).iter().any(|place| {
+    places(&surface.corners(triangle), limits.large_triangle_m2).iter().any(|place| {
         let from = place + limits.start_m * outward;
         most(directions.iter().map(|d| ends_in_the_open(&from, d)), directions.len())
     })

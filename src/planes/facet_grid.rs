@@ -9,7 +9,8 @@
 use std::sync::OnceLock;
 
 use super::city_planes::PlaneId;
-use super::prepared_city::PreparedCity;
+use super::exposure::Exposure;
+use super::surface::CitySurface;
 use crate::city::{CityModel, FacetId};
 use crate::geometry::{Point3, Vector3};
 
@@ -142,7 +143,13 @@ impl FacetGrid {
     /// The nearest triangle within `gate_m` whose outward normal agrees with the probe's. A gate wider than the grid's reach is
     /// cut to it.
     #[inline]
-    pub fn nearest(&self, probe: &Probe, gate_m: f64, city: &PreparedCity) -> Option<Hit> {
+    pub(super) fn nearest(
+        &self,
+        probe: &Probe,
+        gate_m: f64,
+        surface: &CitySurface,
+        exposure: &Exposure,
+    ) -> Option<Hit> {
         let p = &probe.position;
         let d = (p - self.low) * self.cells_per_m;
         if !(d.x >= 0.0 && d.y >= 0.0 && d.z >= 0.0) {
@@ -154,7 +161,7 @@ impl FacetGrid {
             return None;
         }
         let at = (tz * self.tiles[1] + ty) * self.tiles[0] + tx;
-        let tile = self.filled[at].get_or_init(|| self.fill(at, city));
+        let tile = self.filled[at].get_or_init(|| self.fill(at, surface, exposure));
         let cell = ((z % TILE) * TILE + y % TILE) * TILE + x % TILE;
         let list = tile.entries.get(tile.starts[cell] as usize..tile.starts[cell + 1] as usize)?;
         let gate_m = gate_m.min(self.reach_m);
@@ -179,14 +186,14 @@ impl FacetGrid {
         best.map(|(t, across_m, outside_m)| Hit { plane: t.plane, normal: t.normal, across_m, outside_m })
     }
 
-    fn fill(&self, at: usize, city: &PreparedCity) -> Tile {
+    fn fill(&self, at: usize, surface: &CitySurface, exposure: &Exposure) -> Tile {
         let [x, y, z] = [at % self.tiles[0], at / self.tiles[0] % self.tiles[1], at / self.tiles[0] / self.tiles[1]];
         let low = self.low + Vector3::new(x as f64, y as f64, z as f64) * (self.cell_m * TILE as f64);
         let near = &self.near[self.starts[at] as usize..self.starts[at + 1] as usize];
         let prepared = |&t: &u32| {
-            let corners = city.corners(t);
-            let prepared = GridTriangle::new(&corners, city, city.facet_of(t))?;
-            city.is_exposed(t).then_some((prepared, corners))
+            let corners = surface.corners(t);
+            let prepared = GridTriangle::new(&corners, surface, surface.facet_of(t))?;
+            exposure.of(t, surface).then_some((prepared, corners))
         };
         let triangles: Vec<(GridTriangle, [Point3<f64>; 3])> = near.iter().filter_map(prepared).collect();
         let mut starts = vec![0u32; TILE * TILE * TILE + 1];
@@ -243,13 +250,13 @@ impl FacetGrid {
 }
 
 impl GridTriangle {
-    fn new(corners: &[Point3<f64>; 3], city: &PreparedCity, facet: FacetId) -> Option<GridTriangle> {
+    fn new(corners: &[Point3<f64>; 3], surface: &CitySurface, facet: FacetId) -> Option<GridTriangle> {
         let [a, b, c] = corners;
         let across = (b - a).cross(&(c - a));
         if across.norm() < 2.0 * SMALLEST_TRIANGLE_M2 {
             return None;
         }
-        let plane = &city.model.facets[facet.0 as usize].plane;
+        let plane = &surface.model.facets[facet.0 as usize].plane;
         // The triangulation may wind against the facet; edges point out of the triangle all the same.
         let winding = if across.dot(&plane.normal) < 0.0 { -1.0 } else { 1.0 };
         let edge = |from: &Point3<f64>, to: &Point3<f64>| {
@@ -260,7 +267,7 @@ impl GridTriangle {
             normal: plane.normal,
             offset: plane.offset,
             edges: [edge(a, b), edge(b, c), edge(c, a)],
-            plane: city.planes().of_facet(facet),
+            plane: surface.planes().of_facet(facet),
         })
     }
 
@@ -278,6 +285,7 @@ mod tests {
     use super::*;
     use crate::city::{Facet, ObjectId};
     use crate::geometry::Plane;
+    use crate::planes::PreparedCity;
 
     /// Two walls, 0.4 m apart, back to back, 10 m wide and 6 m high: one looks to +x from x = 0.2, one to -x from x = -0.2.
     fn two_walls() -> CityModel {
@@ -311,22 +319,22 @@ mod tests {
     fn finds_the_facet_that_faces_the_same_way_though_another_is_nearer() {
         let city = prepared();
         let grid = city.grid(1.5);
-        let hit = grid.nearest(&probe(-0.3, 5.0, 3.0, 1.0), 1.0, &city).unwrap();
+        let hit = city.nearest(&grid, &probe(-0.3, 5.0, 3.0, 1.0), 1.0).unwrap();
         assert!((hit.across_m + 0.5).abs() < 1e-12 && hit.outside_m == 0.0);
         assert_eq!(hit.normal, Vector3::x());
         let either = Probe { sided: false, ..probe(-0.3, 5.0, 3.0, 1.0) };
-        assert_eq!(grid.nearest(&either, 1.0, &city).unwrap().normal, -Vector3::x());
+        assert_eq!(city.nearest(&grid, &either, 1.0).unwrap().normal, -Vector3::x());
     }
 
     #[test]
     fn measures_to_the_edge_and_ends_at_the_gate() {
         let city = prepared();
         let grid = city.grid(1.5);
-        let hit = grid.nearest(&probe(0.2, 5.0, 6.7, 1.0), 1.0, &city).unwrap();
+        let hit = city.nearest(&grid, &probe(0.2, 5.0, 6.7, 1.0), 1.0).unwrap();
         assert!(hit.across_m.abs() < 1e-12 && (hit.outside_m - 0.7).abs() < 1e-12);
-        assert!(grid.nearest(&probe(0.2, 5.0, 7.2, 1.0), 1.0, &city).is_none());
-        assert!(grid.nearest(&probe(f64::NAN, 5.0, 3.0, 1.0), 1.0, &city).is_none());
-        assert!(grid.nearest(&probe(1e9, 5.0, 3.0, 1.0), 1.0, &city).is_none());
+        assert!(city.nearest(&grid, &probe(0.2, 5.0, 7.2, 1.0), 1.0).is_none());
+        assert!(city.nearest(&grid, &probe(f64::NAN, 5.0, 3.0, 1.0), 1.0).is_none());
+        assert!(city.nearest(&grid, &probe(1e9, 5.0, 3.0, 1.0), 1.0).is_none());
     }
 
     #[test]
@@ -344,7 +352,7 @@ mod tests {
                 .filter(|t| t.normal.x > 0.0)
                 .map(|t| (t.normal.dot(&p.position.coords) + t.offset).hypot(t.outside(&p.position)))
                 .fold(f64::INFINITY, f64::min);
-            let fast = grid.nearest(&p, 1.5, &city).map(|h| h.distance_sq().sqrt());
+            let fast = city.nearest(&grid, &p, 1.5).map(|h| h.distance_sq().sqrt());
             match fast {
                 Some(d) => assert!((d - slow).abs() < 1e-12),
                 None => assert!(slow >= 1.5),
@@ -357,12 +365,12 @@ mod tests {
         let city = prepared();
         let grid = city.grid(1.5);
         assert!(std::sync::Arc::ptr_eq(&grid, &city.grid(1.51)) && grid.reach_m() >= 1.51);
-        assert!(grid.nearest(&probe(0.2 + 2.0, 5.0, 3.0, 1.0), 50.0, &city).is_none());
+        assert!(city.nearest(&grid, &probe(0.2 + 2.0, 5.0, 3.0, 1.0), 50.0).is_none());
     }
 
     #[test]
     fn an_empty_city_has_no_facet_anywhere() {
         let city = PreparedCity::new(CityModel::default());
-        assert!(city.grid(1.0).nearest(&probe(0.0, 0.0, 0.0, 1.0), 1.0, &city).is_none());
+        assert!(city.nearest(&city.grid(1.0), &probe(0.0, 0.0, 0.0, 1.0), 1.0).is_none());
     }
 }

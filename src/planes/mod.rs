@@ -7,6 +7,7 @@ mod facet_grid;
 mod fit;
 mod patches;
 mod prepared_city;
+mod surface;
 mod up_votes;
 mod upright;
 
@@ -16,4 +17,5 @@ pub use facet_grid::{FacetGrid, Hit, Probe};
 pub use fit::{FittedPlane, fit_plane, fit_plane_robustly};
 pub use patches::{Patch, Patches, RejectedGroup, patches};
 pub use prepared_city::PreparedCity;
+pub use surface::CitySurface;
 pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start, up_candidates};

@@ -4,23 +4,21 @@
 //! nearest, is found out tile by tile, where somebody asks. So a small reconstruction in a large city pays for its own streets only,
 //! and the next one there for nothing.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::city_planes::{CityPlanes, PlaneId, city_planes};
+use super::city_planes::PlaneId;
 use super::exposure::Exposure;
-use super::facet_grid::FacetGrid;
+use super::facet_grid::{FacetGrid, Hit, Probe};
+use super::surface::CitySurface;
 use crate::city::{CityModel, FacetId};
-use crate::geometry::{Point3, RayCaster};
+use crate::geometry::Point3;
 use crate::limits::{ExposureLimits, Limits};
 
-/// A city model with all that alignments ask of it.
+/// A city model with all that alignments ask of it; read it as its [`CitySurface`].
 pub struct PreparedCity {
-    pub model: CityModel,
-    facet_of_triangle: Vec<FacetId>,
-    planes: OnceLock<CityPlanes>,
-    rays: OnceLock<RayCaster>,
+    surface: CitySurface,
     exposure: Exposure,
     /// One for each reach that was asked for.
     grids: Mutex<Vec<Arc<FacetGrid>>>,
@@ -36,44 +34,13 @@ impl PreparedCity {
     }
 
     pub fn with_limits(model: CityModel, limits: &ExposureLimits) -> PreparedCity {
-        // A model whose facets were taken away by hand may hold triangles of none.
-        let of_facets: usize = model.facets.iter().map(|facet| facet.triangles.len()).sum();
-        let model = if of_facets == model.triangles.len() { model } else { model.subset(|_| true) };
-        let mut facet_of_triangle = vec![FacetId(0); model.triangles.len()];
-        for (id, facet) in model.facets_with_ids() {
-            facet_of_triangle[facet.triangles.start as usize..facet.triangles.end as usize].fill(id);
-        }
-        PreparedCity {
-            exposure: Exposure::new(model.triangles.len(), limits),
-            model,
-            facet_of_triangle,
-            planes: OnceLock::new(),
-            rays: OnceLock::new(),
-            grids: Mutex::new(Vec::new()),
-        }
-    }
-
-    /// Facets of one object in one plane.
-    pub fn planes(&self) -> &CityPlanes {
-        self.planes.get_or_init(|| city_planes(&self.model))
-    }
-
-    /// All triangles as obstacles; the caster numbers them as the model does.
-    pub fn rays(&self) -> &RayCaster {
-        self.rays.get_or_init(|| RayCaster::new((0..self.model.triangles.len() as u32).map(|t| self.corners(t))))
-    }
-
-    pub fn corners(&self, triangle: u32) -> [Point3<f64>; 3] {
-        self.model.triangles[triangle as usize].map(|v| self.model.vertices[v as usize])
-    }
-
-    pub fn facet_of(&self, triangle: u32) -> FacetId {
-        self.facet_of_triangle[triangle as usize]
+        let surface = CitySurface::new(model);
+        PreparedCity { exposure: Exposure::new(&surface, limits), surface, grids: Mutex::new(Vec::new()) }
     }
 
     /// Whether somebody could have seen a triangle from the open.
     pub fn is_exposed(&self, triangle: u32) -> bool {
-        self.exposure.of(triangle, self)
+        self.exposure.of(triangle, &self.surface)
     }
 
     /// For each plane whether any of it within a box can be seen.
@@ -92,6 +59,12 @@ impl PreparedCity {
         (0..planes.len() as u32).into_par_iter().filter(in_sight).map(PlaneId).collect()
     }
 
+    /// The facet that a probe lies on, by a grid of this city.
+    #[inline]
+    pub fn nearest(&self, grid: &FacetGrid, probe: &Probe, gate_m: f64) -> Option<Hit> {
+        grid.nearest(probe, gate_m, &self.surface, &self.exposure)
+    }
+
     /// The grid of facets that answers within `reach_m`.
     pub fn grid(&self, reach_m: f64) -> Arc<FacetGrid> {
         // A step of a geometric series, so that parts whose noise differs a little share a grid.
@@ -104,6 +77,14 @@ impl PreparedCity {
         let grid = Arc::new(FacetGrid::new(&self.model, reach_m));
         grids.push(Arc::clone(&grid));
         grid
+    }
+}
+
+impl std::ops::Deref for PreparedCity {
+    type Target = CitySurface;
+
+    fn deref(&self) -> &CitySurface {
+        &self.surface
     }
 }
 

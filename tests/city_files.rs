@@ -242,7 +242,7 @@ fn damaged_files_are_refused_with_a_place() {
     let table = [
         ("empty.obj", "the file is empty", "empty.obj"),
         ("no_faces.obj", "the city has no faces: 8 vertices and no polygons", "no_faces.obj"),
-        ("only_slivers.obj", "none of which has an area", "only_slivers.obj"),
+        ("only_slivers.obj", "has no area", "only_slivers.obj"),
         ("nan.obj", "`nan` is not a finite number", "object house, "),
         ("nan.obj", "", "nan.obj:8)"),
         ("far.obj", "`1e300` is not a finite number within 1e9 m", "far.obj:8)"),

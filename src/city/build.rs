@@ -87,7 +87,8 @@ fn reserve(model: &mut CityModel, chunks: &[Chunk]) -> Option<()> {
 fn found(source: &Source) -> String {
     match source.face_count() {
         0 => format!("{} vertices and no polygons", source.positions.len()),
-        faces => format!("{faces} polygons, none of which has an area"),
+        1 => "one polygon, which has no area or crosses itself beyond repair".into(),
+        faces => format!("{faces} polygons, all without an area or crossing themselves beyond repair"),
     }
 }
 

@@ -330,7 +330,7 @@ fn walls_that_stand_twice_are_told_by_their_sides() {
 fn a_city_without_faces_is_refused_with_what_it_has() {
     let refused = |text: &str| build(vec![source(CityRole::City, text)]).unwrap_err().to_string();
     assert!(refused("v 0 0 0\nv 1 0 0\n").contains("2 vertices and no polygons"));
-    assert!(refused("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").contains("1 polygons, none of which has an area"));
+    assert!(refused("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").contains("one polygon, which has no area"));
 }
 
 #[test]

@@ -19,7 +19,7 @@ use clap::{Parser, Subcommand, ValueEnum};
         cityweld demo\n  \
         cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
         cityweld planes city.glb -o planes.glb\n\n\
-        Exit status: 0 aligned; 1 any other verdict; 2 bad input or use, or output that cannot be written; 130 interrupted, nothing left behind."
+        Exit status: 0 aligned, or merged; 1 any other verdict; 2 bad input or use, or output that cannot be written; 130 interrupted, nothing left behind."
 )]
 pub struct Args {
     #[command(subcommand)]
@@ -52,7 +52,14 @@ pub struct Common {
     )]
     pub seed: u64,
     /// Threads to work with, at least 1 [default: all cores]
-    #[arg(long, global = true, value_name = "N", allow_hyphen_values = true, help_heading = "Common options")]
+    #[arg(
+        long,
+        global = true,
+        value_name = "N",
+        allow_hyphen_values = true,
+        value_parser = threads,
+        help_heading = "Common options"
+    )]
     pub threads: Option<NonZeroUsize>,
     /// No progress, no warnings on standard error; errors still come
     #[arg(long, global = true, help_heading = "Common options", conflicts_with = "verbose")]
@@ -77,11 +84,15 @@ pub struct Common {
 #[command(after_help = "Examples:\n  \
     cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
     cityweld align city.glb cloud.ply --terrain ground.obj --start start.json -o out\n\n\
-    A start file: {\"scale\": 12.5, \"rotation\": [[1,0,0],[0,1,0],[0,0,1]], \"translation\": [100, 200, 3],\n  \
-    \"position_sigma\": 10, \"height_sigma\": 3, \"rotation_sigma_deg\": 10, \"tilt_sigma_deg\": 2, \"scale_sigma\": 0.15}\n\
-    It says x_city = scale * rotation * x_sfm + translation (metres, rotation row by row), and how far that may be off, one\n\
-    sigma each: metres horizontally and along up, degrees of heading and of tilt, natural logarithm of the scale. The\n\
-    alignment.json of an earlier run does, too: by its transform, or else its best_candidate.")]
+    A start file:\n  \
+    {\"scale\": 12.5, \"rotation\": [[1,0,0],[0,1,0],[0,0,1]], \"translation\": [100, 200, 3],\n   \
+    \"position_sigma\": 10, \"height_sigma\": 3, \"rotation_sigma_deg\": 10, \"tilt_sigma_deg\": 2, \"scale_sigma\": 0.15}\n\n\
+    It says x_city = scale * rotation * x_sfm + translation (metres, rotation row by row), and how far the middle of the \
+    reconstruction may be off, one sigma each: metres horizontally and along up, degrees of heading and of tilt, natural \
+    logarithm of the scale. The sigmas shown are those of a file that leaves them out. Where nothing is known of the \
+    rotation: the identity, rotation_sigma_deg 180, tilt_sigma_deg 60, and translation = place - scale * middle. The \
+    alignment.json of an earlier run is a start, too: by its transform, or else its best_candidate.\n\n\
+    Exit status: 0 aligned; 1 any other verdict (alignment.json says why).")]
 pub struct AlignArgs {
     /// City model: OBJ, glTF or GLB
     pub city: PathBuf,
@@ -189,7 +200,8 @@ pub struct ExportArgs {
     /// Folder to make; must not exist (see --force)
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
-    /// glb: scene.glb; colmap: sfm/; ply: points.ply [default: all that the reconstruction allows]
+    /// glb: scene.glb; colmap: sfm/; ply: points.ply [default: all that the reconstruction allows]. colmap alone is not
+    /// replaced by --force, as nothing tells it from a model of your own
     #[arg(long, value_name = "FORMATS", value_enum, value_delimiter = ',')]
     pub format: Vec<FormatArg>,
     /// Further meshes in the same frame as CITY; may be given several times
@@ -210,6 +222,14 @@ pub struct DemoArgs {
 
 /// Run the minimal solvers on one point-to-plane problem and print all poses as JSON
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  \
+    echo '{\"kind\": \"rigid\", \"points\": [[1,2,0],[3,1,0],[2,5,0],[0,1,4],[0,2,1],[3,0,2]],\n         \
+    \"planes\": [{\"normal\": [0,0,1], \"offset\": 0}, {\"normal\": [1,0,0], \"offset\": 0},\n                    \
+    {\"normal\": [0,1,0], \"offset\": 0}],\n         \
+    \"pairs\": [[0,0],[1,0],[2,0],[3,1],[4,1],[5,2]]}' | cityweld solve -\n\n\
+    Point i lies on plane j for each pair [i, j]; a plane is normal . x + offset = 0. assets/problem.schema.json \
+    describes problem and answer.\n\n\
+    Exit status: 0 all poses are told; 1 the pose is not determined, and why; 2 no problem, or one that is ill-formed.")]
 pub struct SolveArgs {
     /// The problem, JSON; `-` is standard input
     #[arg(value_name = "PROBLEM.json")]
@@ -272,6 +292,10 @@ impl FromStr for Scale {
             _ => Err("expected a finite number above 0: metres per reconstruction unit".into()),
         }
     }
+}
+
+fn threads(text: &str) -> Result<NonZeroUsize, &'static str> {
+    text.parse().map_err(|_| "expected a whole number of 1 or more")
 }
 
 /// Finite numbers between commas.

@@ -34,6 +34,7 @@ pub struct Spread {
 
 /// Only what is asked for: the rest of a report may be edited or left out.
 #[derive(Deserialize)]
+#[serde(expecting = "an object")]
 struct AlignmentRecord {
     #[serde(default)]
     verdict: String,

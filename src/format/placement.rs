@@ -37,6 +37,7 @@ pub enum PlacementError {
 
 /// The three parts under their names, the rotation row by row.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(expecting = "an object")]
 pub(super) struct SimilarityRecord {
     pub scale: f64,
     pub rotation: [[f64; 3]; 3],

@@ -18,7 +18,7 @@ const EXPECTED: &str = "{\"scale\": s, \"rotation\": [[..],[..],[..]], \"transla
 
 /// The file's own keys. Unknown ones are refused: a misspelt sigma that is silently left out would move the search.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object")]
 struct StartRecord {
     scale: f64,
     rotation: [[f64; 3]; 3],
@@ -196,6 +196,7 @@ mod tests {
             (r#"{"scale": 1, "rotation": [[1,0,0],[0,1,0]], "translation": [0,0,0]}"#.into(), "invalid length 2"),
             (format!(r#"{{"scale": 1, {TURN}, "height_sigma": -2}}"#), "height_sigma is -2"),
             ("[]".into(), "not a valid start"),
+            ("5".into(), "expected an object"),
             (String::new(), "EOF"),
         ] {
             let message = read(&text).unwrap_err();

@@ -266,7 +266,7 @@ fn a_start_with_sigmas_of_zero_gives_finite_numbers_everywhere() {
         for with_ground in [true, false] {
             let alignment = run(with_ground, &AlignOptions { start, fixed_scale, up, ..options(0) });
             assert_finite(&alignment);
-            // Where the start is sure, nothing is searched elsewhere.
+            // What is sure may be refused for a millimetre, but nothing far from it is found.
             if let Some(best) = alignment.best {
                 let off = block(true).move_by(&(best * start.city_from_sfm().inverse()));
                 assert!(off.level_m < 1.5 && off.up_m < 1.5, "{off:?}: {}", alignment.reason);
@@ -359,5 +359,25 @@ fn the_covariance_is_about_the_centre_of_the_scene_and_holds_the_sigmas_of_the_f
         }
         // A block of some tens of metres: centimetres at its radius, and never better than the planes of the model.
         assert!(r > 10.0 && r < 40.0 && of_freedoms[6] < 0.2, "{r} {of_freedoms:?}");
+    }
+}
+
+#[test]
+fn a_start_that_is_exactly_right_and_sure_of_it_is_aligned() {
+    let exact = StartSigmas { position_m: 0.0, height_m: 0.0, heading_rad: 0.0, tilt_rad: 0.0, log_scale: 0.0 };
+    let start = Start::new(sfm_from_city().inverse(), exact).unwrap();
+    let alignment = run(true, &AlignOptions { start, ..options(0) });
+    assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
+    let (level, up) = errors(&alignment);
+    assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
+}
+
+#[test]
+fn a_scale_that_leaves_no_place_is_said_before_a_search() {
+    for scale in [1e-100, 1e-15, 1e300] {
+        let alignment = with_scale(scale, start_off(&OFF));
+        assert_eq!((alignment.verdict, alignment.search.samples), (Verdict::Failed, 0), "{}", alignment.reason);
+        assert!(alignment.reason.contains("check the scale"), "{}", alignment.reason);
+        assert!(alignment.radius.is_finite() && alignment.center.iter().all(|c| c.is_finite()));
     }
 }

@@ -14,10 +14,28 @@ use crate::robust::Motion;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Obstacle {
     EmptyCity,
-    NoPoints { images: usize },
-    NoPatches { points: usize, noise_m: f64 },
-    FarFromTheCity { place: Point3<f64>, distance_m: f64, reach_m: f64, city: [Point3<f64>; 2] },
+    NoPoints {
+        images: usize,
+    },
+    NoPatches {
+        points: usize,
+        noise_m: f64,
+    },
+    /// At the start's scale the cloud is smaller than a gate, or beyond all measure.
+    OddSize {
+        radius_m: f64,
+        scale: f64,
+    },
+    FarFromTheCity {
+        place: Point3<f64>,
+        distance_m: f64,
+        reach_m: f64,
+        city: [Point3<f64>; 2],
+    },
 }
+
+/// No cloud of a city is larger, metres: the Earth's radius.
+const LARGEST_RADIUS_M: f64 = 6.4e6;
 
 /// The first obstacle that is met; `start` maps to the city's local frame.
 pub(super) fn find(
@@ -52,8 +70,13 @@ fn far_off(
     let upright = Upright { up, sigma_rad: start.sigmas().tilt_rad, known: false };
     let votes = Votes::new(patches, start.city_from_sfm(), &upright, limits);
     let place = votes.center_in_city;
+    let scale = start.city_from_sfm().scale;
+    let grown_m = votes.radius_m * (limits.reach_sigmas * start.sigmas().log_scale).exp();
+    if !(grown_m >= limits.model_unit_m && votes.radius_m <= LARGEST_RADIUS_M) {
+        return Some(Obstacle::OddSize { radius_m: votes.radius_m, scale });
+    }
     // The sigmas as they were given: bounded by the city they always reach it.
-    let prior = Prior::new(start, place, Motion::Similarity, false, None, limits);
+    let prior = Prior::new(start, place, votes.radius_m, Motion::Similarity, false, None, limits);
     let reach = prior.reach(&votes.extent());
     let apart = |k: usize| (low[k] - reach.high[k]).max(reach.low[k] - high[k]).max(0.0);
     if (0..3).all(|k| apart(k) == 0.0) {
@@ -83,6 +106,11 @@ impl fmt::Display for Obstacle {
                 f,
                 "no planar patch among {points} points (their noise is {noise_m:.2} m at the start's scale); walls, roofs or ground \
                  with eight points and more on each are needed"
+            ),
+            Obstacle::OddSize { radius_m, scale } => write!(
+                f,
+                "at {scale:e} metres per reconstruction unit the reconstruction has a radius of {radius_m:.3e} m, which is that of no place; \
+                 check the scale of the start (or --scale)"
             ),
             Obstacle::FarFromTheCity { place, distance_m, reach_m, city: [low, high] } => write!(
                 f,

@@ -193,7 +193,7 @@ mod tests {
 
     fn belief(motion: Motion) -> Belief {
         let (start, limits) = (Start::with_default_sigmas(Similarity::identity()), Limits::default());
-        let prior = Prior::new(&start, Point3::origin(), motion, false, None, &limits);
+        let prior = Prior::new(&start, Point3::origin(), 40.0, motion, false, None, &limits);
         Belief::new(&prior, Matrix3::identity(), RowErrors::new(&limits, 40.0))
     }
 

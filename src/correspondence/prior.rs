@@ -56,9 +56,12 @@ const MARGIN_M: f64 = 2.0;
 
 impl Prior {
     /// `center_in_city` is where the start puts the cloud's middle; `city` bounds what a sigma can mean.
+    /// `radius_m`: of the cloud, metres of the start. No start is better than the model that it is compared with: an error of one plane
+    /// is what its sigmas are at least.
     pub fn new(
         start: &Start,
         center_in_city: Point3<f64>,
+        radius_m: f64,
         motion: Motion,
         up_is_known: bool,
         city: Option<(Point3<f64>, Point3<f64>)>,
@@ -68,7 +71,7 @@ impl Prior {
             center_in_city,
             motion,
             up_is_known,
-            sigmas: bounded(start.sigmas(), &center_in_city, city),
+            sigmas: bounded(&at_least(start.sigmas(), limits.plane_sigma_m, radius_m), &center_in_city, city),
             reach_sigmas: limits.reach_sigmas,
             cost_of_sigma_sq: limits.prior_cost,
             least_tilt_rad: limits.least_tilt_rad,
@@ -171,6 +174,18 @@ pub fn heading_of(rotation: &Matrix3<f64>) -> f64 {
     (rotation[(1, 0)] - rotation[(0, 1)]).atan2(rotation[(0, 0)] + rotation[(1, 1)])
 }
 
+/// The sigmas, none smaller than a length at the scene's radius.
+fn at_least(sigmas: &StartSigmas, length_m: f64, radius_m: f64) -> StartSigmas {
+    let share = length_m / radius_m.max(length_m);
+    StartSigmas {
+        position_m: sigmas.position_m.max(length_m),
+        height_m: sigmas.height_m.max(length_m),
+        heading_rad: sigmas.heading_rad.max(share),
+        tilt_rad: sigmas.tilt_rad.max(share),
+        log_scale: sigmas.log_scale.max(share),
+    }
+}
+
 /// Where one sigma covers the whole city a larger one says no more, and would only spread the samples.
 fn bounded(sigmas: &StartSigmas, center: &Point3<f64>, city: Option<(Point3<f64>, Point3<f64>)>) -> StartSigmas {
     let Some((low, high)) = city else { return *sigmas };
@@ -192,7 +207,7 @@ mod tests {
         change(&mut sigmas);
         let start = Start::new(Similarity::identity(), sigmas).unwrap();
         let city = (Point3::new(-50.0, -50.0, 0.0), Point3::new(250.0, 50.0, 20.0));
-        Prior::new(&start, Point3::new(100.0, 0.0, 5.0), motion, true, Some(city), &Limits::default())
+        Prior::new(&start, Point3::new(100.0, 0.0, 5.0), 20.0, motion, true, Some(city), &Limits::default())
     }
 
     fn usual() -> Prior {

@@ -301,9 +301,9 @@ mod tests {
     #[test]
     fn stray_points_beside_a_wall_hold_no_roof_that_is_not_there() {
         let block = Block::four_houses();
-        // Behind the front of the first house, 7 m high, in a level row 6.4 m up: they would lie on the edge of its roof, were that
+        // Behind the front of the first house, 7 m high, in a level row 6.9 m up: they would lie on the edge of its roof, were that
         // lower. Too far off the wall for its patch, and near enough to be taken for its own.
-        let stray = |k: i32| (Point3::new(1.5 * f64::from(k), 0.018, 6.4), Vector3::new(0.0, -1.0, 1.0));
+        let stray = |k: i32| (Point3::new(1.5 * f64::from(k), 0.018, 6.9), Vector3::new(0.0, -1.0, 1.0));
         let sharp = CloudOptions { noise_m: 0.004, ..walls_alone() };
         let survey = with_points(block.cloud(&sharp), &(1..8).map(stray).collect::<Vec<_>>());
         let made = Made::new(block, survey);
@@ -311,12 +311,13 @@ mod tests {
         assert_eq!(scene.votes.probes.len() - scene.votes.firm, 7, "all of them are loose");
         let refiner = Refiner::new(&scene);
         let sharp = refiner.sharpen(&firm(&scene), &made.truth(&scene), scene.unit_m);
-        let on_roof = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, 0.6], ..Offset::default() });
+        let on_roof = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, 0.1], ..Offset::default() });
         let support = |pose: &Similarity| planes_with_points(&refiner, &all(&scene), pose, scene.unit_m);
         assert!(support(&on_roof) > support(&sharp.city_from_level), "they tempt");
         let settled = settle(&refiner, &all(&scene), sharp, scene.unit_m, 1.2);
         let rise_m = made.rise_m(&scene, &settled.city_from_level);
-        assert!(rise_m.abs() < 0.02, "{rise_m}");
+        // Far from the 10 cm that tempt.
+        assert!(rise_m.abs() < 0.05, "{rise_m}");
     }
 
     #[test]

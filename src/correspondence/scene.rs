@@ -36,7 +36,8 @@ impl<'a> Scene<'a> {
         limits: &'a Limits,
     ) -> Scene<'a> {
         let votes = Votes::new(patches, start.city_from_sfm(), upright, limits);
-        let prior = Prior::new(start, votes.center_in_city, motion, upright.known, city.model.bounds(), limits);
+        let prior =
+            Prior::new(start, votes.center_in_city, votes.radius_m, motion, upright.known, city.model.bounds(), limits);
         let unit_m = limits.model_unit_m + limits.noise_sigmas * votes.noise_m;
         // A pose may be as much larger than the start as the scale allows, and its gates with it.
         let grid = |gate_units: f64| city.grid(gate_units * unit_m * prior.most_scale());

@@ -83,16 +83,35 @@ const SMALLEST_TRIANGLE_M2: f64 = 1e-6;
 const TILE: usize = 16;
 /// Cells as wide as this share of the reach: half as wide lists are half as long, and filling them takes four times as long.
 const CELL_OF_REACH: f64 = 0.5;
-/// A grid never has more tiles than this; a larger city gets larger cells.
-const MOST_TILES: f64 = 4e6;
+/// A grid has no more tiles than so many for each triangle of the city, and lists no triangle in more tiles than that on average: its memory
+/// goes by the model and not by its extent. Chosen: a triangle of a house lies in two to six.
+const TILES_OF_TRIANGLE: f64 = 16.0;
+/// Of small cities it has as many as of one of so many triangles.
+const LEAST_TRIANGLES: usize = 4096;
+
+/// How many places triangles would take in the lists of tiles.
+fn listed(city: &CityModel, reach_m: f64, tile_m: f64) -> f64 {
+    let tiles = |triangle: &[u32; 3]| -> f64 {
+        let [a, b, c] = triangle.map(|v| city.vertices[v as usize]);
+        let extent = a.sup(&b).sup(&c) - a.inf(&b).inf(&c);
+        extent.iter().map(|e| (e + 2.0 * reach_m) / tile_m + 1.0).product()
+    };
+    city.triangles.iter().map(tiles).sum()
+}
 
 impl FacetGrid {
     pub(super) fn new(city: &CityModel, reach_m: f64) -> FacetGrid {
         let (low, high) = city.bounds().unwrap_or((Point3::origin(), Point3::origin()));
         let (low, high) = (low - Vector3::repeat(reach_m), high + Vector3::repeat(reach_m));
         let extent = high - low;
-        let tile_m = (CELL_OF_REACH * reach_m * TILE as f64).max((extent.product() / MOST_TILES).cbrt());
-        let tiles = [0, 1, 2].map(|k| (extent[k] / tile_m).ceil().max(1.0) as usize);
+        let mut tile_m = CELL_OF_REACH * reach_m * TILE as f64;
+        let tiles_of = |tile_m: f64| [0, 1, 2].map(|k| (extent[k] / tile_m).ceil().max(1.0));
+        // Wider tiles until both they and the places that triangles take in them are few enough for the city.
+        let most = TILES_OF_TRIANGLE * city.triangles.len().max(LEAST_TRIANGLES) as f64;
+        while tiles_of(tile_m).iter().product::<f64>() > most || listed(city, reach_m, tile_m) > most {
+            tile_m *= 2.0;
+        }
+        let tiles = tiles_of(tile_m).map(|count| count as usize);
         let mut grid = FacetGrid {
             reach_m,
             low,
@@ -372,5 +391,18 @@ mod tests {
     fn an_empty_city_has_no_facet_anywhere() {
         let city = PreparedCity::new(CityModel::default());
         assert!(city.nearest(&city.grid(1.0), &probe(0.0, 0.0, 0.0, 1.0), 1.0).is_none());
+    }
+
+    #[test]
+    fn memory_goes_by_the_model_and_not_by_its_extent() {
+        let far = 5e6;
+        let square = |z: f64| {
+            let corners = [(-far, -far), (far, -far), (far, far), (-far, far)];
+            ("ground".to_owned(), corners.map(|(x, y)| Point3::new(x, y, z)).to_vec())
+        };
+        let squares: Vec<(String, Vec<Point3<f64>>)> = (0..300).map(|k| square(0.01 * f64::from(k))).collect();
+        let city = PreparedCity::new(CityModel::from_polygons(&squares).unwrap());
+        let grid = city.grid(1.5);
+        assert!(grid.filled.len() <= 65_536 && grid.near.len() <= 65_536, "{} {}", grid.filled.len(), grid.near.len());
     }
 }

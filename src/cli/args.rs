@@ -113,11 +113,11 @@ pub struct AlignArgs {
     /// Folder of the photographs (JPEG or PNG), named as in the reconstruction
     #[arg(long, value_name = "DIR")]
     pub photos: Option<PathBuf>,
-    /// Fixed scale, metres per reconstruction unit [default: free]
+    /// Scale that is known, metres per reconstruction unit: held exactly, in place of the start's [default: free]
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub scale: Option<Scale>,
-    /// Up in the reconstruction's frame: auto (walls and floors tell), none (not used: the search turns freely, as far as three
-    /// sigmas of the start's tilt), or X,Y,Z of any length
+    /// Up in the reconstruction's frame: auto (walls, floors, cameras and start tell together), none (not used: the search turns
+    /// freely, as far as three sigmas of the start's tilt), or X,Y,Z of any length
     #[arg(long, value_name = "UP", default_value = "auto", allow_hyphen_values = true)]
     pub up: UpArg,
     /// Axis that is up in OBJ files

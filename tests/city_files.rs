@@ -175,6 +175,40 @@ fn assert_terrain_joins(city: &Path, terrain: &Path, facets: usize) {
     assert_eq!(both.facets.len(), alone.facets.len() + facets);
 }
 
+/// The sample with every line of one kind rewritten, read.
+fn rewritten(kind: &str, rewrite: impl Fn(&[&str]) -> String) -> CityModel {
+    let text = std::fs::read_to_string(sample()).unwrap();
+    let line = |line: &str| match line.split_once(' ') {
+        Some((word, rest)) if word == kind => {
+            format!("{kind} {}\n", rewrite(&rest.split_whitespace().collect::<Vec<_>>()))
+        }
+        _ => format!("{line}\n"),
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("city.obj");
+    std::fs::write(&path, text.lines().map(line).collect::<String>()).unwrap();
+    read(&path)
+}
+
+fn reversed(corners: &[&str]) -> String {
+    corners.iter().rev().copied().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn a_city_wound_inwards_is_turned_and_told_to_be_perhaps_a_mirror_image() {
+    let (right, turned) = (read(&sample()), rewritten("f", reversed));
+    let area = |m: &CityModel| m.facets.iter().map(|f| f.area).sum::<f64>();
+    let same = right.facets.iter().zip(&turned.facets).filter(|(a, b)| a.plane.normal.dot(&b.plane.normal) > 0.0);
+    let same_m2: f64 = same.map(|(facet, _)| facet.area).sum();
+    assert!(same_m2 > 0.99 * area(&right), "{same_m2} of {}", area(&right));
+    for city in [turned, rewritten("v", |v| [v[1], v[0], v[2]].join(" "))] {
+        let told =
+            city.warnings.iter().map(ToString::to_string).any(|w| w.contains("inside out") && w.contains("mirror"));
+        assert!(told, "{:?}", city.warnings);
+    }
+    assert!(right.warnings.iter().all(|warning| !warning.to_string().contains("mirror")));
+}
+
 #[test]
 fn one_house_is_the_same_in_every_format() {
     let obj = read(&data("good.obj"));

@@ -10,7 +10,8 @@
 //!    15,000 turned, most of them wrongly), parity where frames and panes of windows are not watertight (5,000 of
 //!    143,000). All rays rise, because what every model may leave out is the ground; so roofs must look up. A wall that
 //!    stands alone has as many rays for it as against it, and nothing tells.
-//! 3. What nothing tells goes with the rest of its object if that was inside out, and else stays as it is.
+//! 3. What nothing tells goes with the rest of its object if that was inside out, and else stays as it is. A file of which most
+//!    that tells its side looks inward is turned as a whole, then judged as any other.
 //!
 //! Terrain is one surface that looks up as a whole. A mirror image of a city is a city wound inwards to all of this: see
 //! [`CityDefect::InsideOut`].
@@ -44,6 +45,9 @@ const LEAST_FREE: usize = 2;
 /// Share of an object that must have been turned for what nothing tells to be turned with it.
 const WHOLE: f64 = 0.9;
 
+/// Share of a file's area that must tell its side before the file is turned as a whole. Chosen: a few odd walls shall not turn a city.
+const TELLING_SHARE: f64 = 0.1;
+
 /// Boxes that one ray may pass; in a building of 10,000 triangles it passes some 50.
 const BOXES_PER_RAY: usize = 512;
 
@@ -70,17 +74,53 @@ pub(super) fn turn_outward(
         return;
     }
     let objects = facets_by_object(model, source.objects.clone(), source.facets.clone());
+    let mut turned = inward(model, &objects, source);
+    if turned.mostly {
+        // What nothing tells was wound as the rest was: turn all, and judge it as any other file.
+        source.facets.clone().for_each(|facet| turn(model, facet));
+        let still = inward(model, &objects, source);
+        still.facets.iter().flatten().for_each(|&facet| turn(model, facet));
+        let others = |(all, still): (&Vec<u32>, &Vec<u32>)| {
+            all.iter().copied().filter(|facet| still.binary_search(facet).is_err()).collect()
+        };
+        turned.facets = objects.iter().zip(&still.facets).map(others).collect();
+    } else {
+        turned.facets.iter().flatten().for_each(|&facet| turn(model, facet));
+    }
+    let met = objects.iter().zip(&turned.facets).filter(|(_, turned)| !turned.is_empty());
+    let is_whole = |(all, turned): &(&Vec<u32>, &Vec<u32>)| area(model, turned) > area(model, all) / 2.0;
+    let (whole, part): (Vec<_>, Vec<_>) = met.partition(is_whole);
+    let (of, facets) = (objects.len() as u64, part.iter().map(|(_, turned)| turned.len() as u64).sum());
+    warnings.add(CityDefect::InsideOut { of }, whole.len() as u64, || place_of(whole[0].1[0]));
+    warnings.add(CityDefect::WoundAgainstTheRest { facets }, part.len() as u64, || place_of(part[0].1[0]));
+}
+
+/// The facets of each object that look inward, ascending, and whether most of what tells its side does.
+struct Inward {
+    facets: Vec<Vec<u32>>,
+    mostly: bool,
+}
+
+fn inward(model: &CityModel, objects: &[Vec<u32>], source: &CitySource) -> Inward {
+    let judge = |facets: &Vec<u32>| Object::new(model, facets, source).judged();
     let chunks = objects.par_chunks(OBJECTS_PER_CHUNK);
-    let judged: Vec<Vec<Vec<u32>>> =
-        chunks.map(|chunk| chunk.iter().map(|facets| Object::new(model, facets, source).inward()).collect()).collect();
-    let met = objects.iter().zip(judged.iter().flatten()).filter(|(_, inward)| !inward.is_empty());
-    let (whole, part): (Vec<_>, Vec<_>) =
-        met.map(|(facets, inward)| (inward, area(model, inward) > area(model, facets) / 2.0)).partition(|met| met.1);
-    let count = |met: &[(&Vec<u32>, bool)]| met.len() as u64;
-    let (of, facets) = (objects.len() as u64, part.iter().map(|(inward, _)| inward.len() as u64).sum());
-    warnings.add(CityDefect::InsideOut { of }, count(&whole), || place_of(whole[0].0[0]));
-    warnings.add(CityDefect::WoundAgainstTheRest { facets }, count(&part), || place_of(part[0].0[0]));
-    judged.iter().flatten().flatten().for_each(|&facet| turn(model, facet));
+    let judged: Vec<Vec<Judged>> = chunks.map(|chunk| chunk.iter().map(judge).collect()).collect();
+    let (mut told_m2, mut turned_m2) = (0.0, 0.0);
+    for object in judged.iter().flatten() {
+        (told_m2, turned_m2) = (told_m2 + object.told_m2, turned_m2 + object.turned_m2);
+    }
+    let all_m2: f64 = objects.iter().map(|facets| area(model, facets)).sum();
+    let facets = judged.into_iter().flatten().map(|object| object.inward).collect();
+    Inward { facets, mostly: turned_m2 > told_m2 / 2.0 && told_m2 > TELLING_SHARE * all_m2 }
+}
+
+/// What the facets of one object tell of their sides.
+struct Judged {
+    /// The facets that look inward, ascending.
+    inward: Vec<u32>,
+    /// Area of what tells its side, and of what of this looks inward.
+    told_m2: f64,
+    turned_m2: f64,
 }
 
 /// The facet seen from its other side.
@@ -182,8 +222,7 @@ impl<'a> Object<'a> {
         &self.model.facets[self.facets[member] as usize]
     }
 
-    /// The facets that look inward, ascending.
-    fn inward(&self) -> Vec<u32> {
+    fn judged(&self) -> Judged {
         let mut sides: Vec<Side> = self.shells.iter().map(|shell| self.side_by_volume(shell)).collect();
         let disagree = |sides: &[Side]| sides.contains(&Side::Outward) && sides.contains(&Side::Inward);
         if sides.contains(&Side::Untold) || disagree(&sides) {
@@ -210,7 +249,8 @@ impl<'a> Object<'a> {
             let untold = self.shells.iter().zip(&sides).filter(|(_, side)| **side == Side::Untold);
             untold.flat_map(|(shell, _)| &shell.members).for_each(|&member| inward[member] = true);
         }
-        self.facets.iter().zip(inward).filter(|(_, inward)| *inward).map(|(&facet, _)| facet).collect()
+        let inward = self.facets.iter().zip(inward).filter(|(_, inward)| *inward).map(|(&facet, _)| facet).collect();
+        Judged { inward, told_m2, turned_m2 }
     }
 
     /// By the sign of the volume; nothing where the shell is open, or flat to the digits of the file.

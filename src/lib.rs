@@ -14,6 +14,7 @@ pub mod solvers;
 pub mod robust;
 pub mod planes;
 pub mod correspondence;
+pub mod evidence;
 pub mod verdict;
 pub mod merging;
 pub mod export;

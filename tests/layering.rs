@@ -16,6 +16,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robust", &["geometry", "solvers"]),
     ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["limits", "geometry", "city", "planes", "solvers", "robust"]),
+    ("evidence", &["limits", "geometry", "correspondence"]),
     ("verdict", &["limits", "geometry", "robust"]),
     (
         "merging",
@@ -24,7 +25,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict", "merging"]),
     (
         "align",
-        &["limits", "geometry", "city", "reconstruction", "imagery", "robust", "planes", "correspondence", "verdict"],
+        &[
+            "limits",
+            "geometry",
+            "city",
+            "reconstruction",
+            "imagery",
+            "robust",
+            "planes",
+            "correspondence",
+            "evidence",
+            "verdict",
+        ],
     ),
     ("lib", &["align"]),
     // For tests, examples and benchmarks: no room may import it.

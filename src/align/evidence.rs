@@ -1,6 +1,7 @@
 //! What speaks for the best pose and holds it, and what its rivals have.
 
-use crate::correspondence::{Candidate, ProbeOnPlane, Refiner, candidate_at, settled};
+use crate::correspondence::{Candidate, ProbeOnPlane, Refiner, Scene, settled};
+use crate::evidence::{Contest, Contestant};
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Matrix7};
 use crate::verdict::{Evidence, GivenScale, Hold, Rival};
@@ -14,21 +15,60 @@ pub(super) struct Gathered {
     pub firm: usize,
 }
 
-/// Gathers what the verdict reads of a search's candidates; `given_scale` where the scale was given.
-pub(super) fn gather(refiner: &Refiner, candidates: &[Candidate], given_scale: Option<GivenScale>) -> Gathered {
+/// All poses that may be right, each with its evidence: the best first, then by what evidence and start say together. The search's
+/// order holds, whose gates are the narrower, unless the evidence for another of its poses is sure.
+pub(super) fn heard(contest: &Contest, scene: &Scene, candidates: &[Candidate]) -> Vec<Contestant> {
+    let of_search = |candidate: &Candidate| Contestant {
+        weighed: contest.weigh(&candidate.refined.city_from_level),
+        candidate: candidate.clone(),
+        by_chance: false,
+    };
+    let likelihood = |c: &Contestant| c.weighed.bits + scene.prior.bits(&c.candidate.refined.city_from_level);
+    let mut all: Vec<Contestant> = candidates.iter().map(of_search).collect();
+    let margin = scene.limits.verdict.margin_bits();
+    let best = (1..all.len()).fold(0, |best, i| {
+        let lead = if best == 0 { margin } else { 0.0 };
+        if likelihood(&all[i]) > likelihood(&all[best]) + lead { i } else { best }
+    });
+    all.swap(0, best);
+    all.extend(contest.others.iter().cloned());
+    if let [_, others @ ..] = &mut all[..] {
+        others.sort_by(|a, b| likelihood(b).total_cmp(&likelihood(a)));
+    }
+    all
+}
+
+/// Gathers what the verdict reads of the poses that were heard; `given_scale` where the scale was given.
+pub(super) fn gather(
+    refiner: &Refiner,
+    contest: Option<&Contest>,
+    contestants: &[Contestant],
+    given_scale: Option<GivenScale>,
+) -> Gathered {
     let scene = refiner.scene;
-    let rows = candidates.first().map_or(Vec::new(), |best| rows(refiner, &best.refined.city_from_level));
-    let chart = candidates.first().map_or(chart_of_prior(refiner), |best| best.refined.chart);
+    let best = contestants.first();
+    let rows = best.map_or(Vec::new(), |best| rows(refiner, &best.candidate.refined.city_from_level));
+    let chart = best.map_or(chart_of_prior(refiner), |best| best.candidate.refined.chart);
     let hold = Hold {
         chart: Chart { center: chart.center + scene.city.model.origin, ..chart },
         by_plane: by_plane(refiner, &chart, &rows),
         prior: scene.prior.information(&chart),
         given_scale,
     };
-    let rivals = candidates.iter().map(|c| rival(refiner, c)).collect();
-    let evidence = Evidence { rivals, hold, has_cameras: !scene.votes.cameras.is_empty() };
+    let by_chance = contest.map_or(&[][..], |contest| &contest.by_chance);
+    let evidence = Evidence {
+        rivals: contestants.iter().map(|c| rival(refiner, c)).collect(),
+        hold,
+        witnesses: contest.map_or(0, Contest::witnesses),
+        speaking: best.map_or(0, |best| best.weighed.by_witness.iter().filter(|bits| **bits >= SPEAKS_BITS).count()),
+        by_chance: by_chance.len(),
+        most_by_chance: by_chance.first().copied().unwrap_or(0.0),
+    };
     Gathered { evidence, rows, firm: scene.votes.firm }
 }
+
+/// A plane speaks for a pose from so many bits on. Chosen: what chance gives to two in three.
+const SPEAKS_BITS: f64 = 0.5;
 
 fn rows(refiner: &Refiner, pose: &Similarity) -> Vec<ProbeOnPlane> {
     let all: Vec<u32> = (0..refiner.scene.votes.probes.len() as u32).collect();
@@ -42,15 +82,17 @@ fn by_plane(refiner: &Refiner, chart: &Chart, rows: &[ProbeOnPlane]) -> Vec<Matr
     planes.map(|plane| refiner.equations_of_plane(chart, plane).full()).collect()
 }
 
-fn rival(refiner: &Refiner, candidate: &Candidate) -> Rival {
-    let scene = refiner.scene;
-    let local = scene.city_from_sfm(&candidate.refined.city_from_level);
+fn rival(refiner: &Refiner, contestant: &Contestant) -> Rival {
+    let (scene, candidate) = (refiner.scene, &contestant.candidate);
+    let pose = &candidate.refined.city_from_level;
+    let local = scene.city_from_sfm(pose);
     Rival {
         city_from_sfm: Similarity { translation: local.translation + scene.city.model.origin, ..local },
         share: candidate.share,
         blocked: candidate.blocked,
-        balance: candidate.balance(),
-        lead_sigmas: candidate.lead_sigmas,
+        bits: contestant.weighed.bits,
+        bits_of_start: scene.prior.bits(pose),
+        beyond_start: !scene.prior.reaches(pose),
     }
 }
 
@@ -60,16 +102,16 @@ fn chart_of_prior(refiner: &Refiner) -> Chart {
 }
 
 /// The scale that the data would have, were it free, from a pose of the given scale on.
-pub(super) fn scale_from(refiner: &Refiner, candidate: &Candidate) -> GivenScale {
+pub(super) fn scale_from(refiner: &Refiner, contest: &Contest, candidate: &Candidate) -> GivenScale {
     let (scene, free) = (refiner.scene, refiner.with_free_scale());
     let firm: Vec<u32> = (0..scene.votes.firm as u32).collect();
     let gates_m: Vec<f64> = scene.limits.verdict.scale_gates_units.iter().map(|gate| gate * scene.unit_m).collect();
     let near = free.refine(&firm, &candidate.refined.city_from_level, &gates_m).city_from_level;
-    scale_at(&free, &settled(&free, &near).city_from_level)
+    scale_at(&free, contest, &settled(&free, &near).city_from_level)
 }
 
 /// The scale of a pose that was found with the scale free, beside the given one.
-pub(super) fn scale_at(free: &Refiner, pose: &Similarity) -> GivenScale {
+pub(super) fn scale_at(free: &Refiner, contest: &Contest, pose: &Similarity) -> GivenScale {
     let scene = free.scene;
     let chart = free.assess(&[], pose, 0.0).chart;
     // What is known beforehand of all else keeps an open height from opening the scale.
@@ -82,6 +124,6 @@ pub(super) fn scale_at(free: &Refiner, pose: &Similarity) -> GivenScale {
         given,
         of_data: given * pose.scale,
         log_sigma: if variance > 0.0 { variance.sqrt() / chart.radius } else { f64::INFINITY },
-        balance: candidate_at(free, pose).balance(),
+        bits: contest.weigh(pose).bits,
     }
 }

@@ -4,8 +4,11 @@ mod evidence;
 mod obstacle;
 mod report;
 
+use std::f64::consts::PI;
+
 use crate::correspondence::{Candidate, Hypotheses, Refiner, Scene, candidates, joined, search};
-use crate::geometry::{Similarity, Start, Vector3};
+use crate::evidence::{Contest, Contestant};
+use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
 use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
@@ -66,9 +69,14 @@ pub fn align(
     progress("city", 0, 1);
     let task = Task { city, patches: &patches, start: &start, options, progress };
     let view = task.best_view(if options.fixed_scale.is_some() { Motion::Rigid } else { Motion::Similarity });
+    progress("evidence", 0, 1);
+    let surroundings = task.surroundings(&view);
+    let contest = view.candidates.first().map(|best| Contest::new(&surroundings, &best.refined, options.seed));
+    let contestants =
+        contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
     let refiner = Refiner::new(&view.scene);
-    let given_scale = options.fixed_scale.and_then(|_| task.scale_of_data(&refiner, &view.candidates));
-    let holding = evidence::gather(&refiner, &view.candidates, given_scale);
+    let given_scale = options.fixed_scale.and_then(|_| task.scale_of_data(&refiner, contest.as_ref()?, &contestants));
+    let holding = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale);
     let ruling = judge(&holding.evidence, &options.limits.verdict);
     let up_elsewhere = up_elsewhere(&ruling, &patches, &start, options);
     report::tell(ruling, holding, &view.hypotheses, &patches, up_elsewhere, city, options)
@@ -96,6 +104,7 @@ struct Task<'a> {
 
 /// One way of taking up, searched.
 struct View<'a> {
+    upright: Upright,
     scene: Scene<'a>,
     hypotheses: Hypotheses,
     candidates: Vec<Candidate>,
@@ -125,20 +134,30 @@ impl<'a> Task<'a> {
         let scene = Scene::new(self.city, self.patches, self.start, motion, upright, &self.options.limits);
         let hypotheses = search(&scene, self.options.seed, &|done, of| (self.progress)("search", done, of));
         let candidates = candidates(&Refiner::new(&scene), &hypotheses);
-        View { scene, hypotheses, candidates }
+        View { upright: *upright, scene, hypotheses, candidates }
+    }
+
+    /// The scene of a view with a prior that reaches over its neighbourhood, whatever the heading.
+    fn surroundings(&self, view: &View) -> Scene<'a> {
+        let limits = &self.options.limits;
+        let StartSigmas { position_m, .. } = *self.start.sigmas();
+        let least_m = limits.contenders.least_reach_m / limits.reach_sigmas;
+        let sigmas = StartSigmas { position_m: position_m.max(least_m), heading_rad: PI, ..*self.start.sigmas() };
+        let start = self.start.with_sigmas(sigmas);
+        Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits)
     }
 
     /// What the data say of a scale that was given: beside the best pose, and where that is not one to rely on, by a search of its own.
-    fn scale_of_data(&self, refiner: &Refiner, candidates: &[Candidate]) -> Option<GivenScale> {
-        let beside = candidates.first().map(|best| evidence::scale_from(refiner, best));
-        let limits = &self.options.limits.verdict;
-        let least = limits.least_balance_of(!refiner.scene.votes.cameras.is_empty());
-        if beside.is_some_and(|scale| scale.balance >= least) {
+    fn scale_of_data(&self, refiner: &Refiner, contest: &Contest, contestants: &[Contestant]) -> Option<GivenScale> {
+        let beside = contestants.first().map(|best| evidence::scale_from(refiner, contest, &best.candidate));
+        if beside.is_some_and(|scale| scale.bits >= self.options.limits.verdict.margin_bits()) {
             return beside;
         }
         let free = self.best_view(Motion::Similarity);
         let best = free.candidates.first()?;
-        Some(evidence::scale_at(&Refiner::new(&free.scene), &best.refined.city_from_level))
+        let surroundings = self.surroundings(&free);
+        let contest = Contest::new(&surroundings, &best.refined, self.options.seed);
+        Some(evidence::scale_at(&Refiner::new(&free.scene), &contest, &best.refined.city_from_level))
     }
 }
 

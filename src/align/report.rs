@@ -6,7 +6,7 @@ use super::obstacle::Obstacle;
 use crate::correspondence::{Hypotheses, NO_SOLVER, ProbeOnPlane};
 use crate::geometry::Point3;
 use crate::planes::{Patches, PreparedCity, UpCandidate};
-use crate::verdict::{Alignment, PlaneEvidence, Ruling, SearchSummary, Support, Verdict, freedoms};
+use crate::verdict::{Alignment, Certainty, PlaneEvidence, Ruling, SearchSummary, Support, Verdict, freedoms};
 
 /// The alignment that a ruling makes of what was found.
 pub(super) fn tell(
@@ -25,6 +25,7 @@ pub(super) fn tell(
         reason: ruling.reason + &up_elsewhere.map_or(String::new(), words_of_up),
         best: rivals.first().map(|r| r.city_from_sfm),
         alternatives: ruling.alternatives,
+        certainty: ruling.certainty,
         origin: city.model.origin,
         center: hold.chart.center,
         radius: hold.chart.radius,
@@ -53,6 +54,7 @@ pub(super) fn refused(
         reason: obstacle.to_string(),
         best: None,
         alternatives: Vec::new(),
+        certainty: Certainty { false_alarm: options.limits.verdict.false_alarm, ..Certainty::default() },
         origin: city.model.origin,
         center: Point3::from(city.model.origin),
         radius: 0.0,

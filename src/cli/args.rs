@@ -120,6 +120,9 @@ pub struct AlignArgs {
     /// freely, as far as three sigmas of the start's tilt), or X,Y,Z of any length
     #[arg(long, value_name = "UP", default_value = "auto", allow_hyphen_values = true)]
     pub up: UpArg,
+    /// Chance of a wrong pose called aligned that may be taken, above 0 and below 1
+    #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
+    pub false_alarm: Chance,
     /// Axis that is up in OBJ files
     #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
     pub city_up: CityUpArg,
@@ -282,6 +285,21 @@ impl FromStr for UpArg {
 /// `--scale`, metres per reconstruction unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale(pub f64);
+
+/// A chance, above 0 and below 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chance(pub f64);
+
+impl FromStr for Chance {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Chance, String> {
+        match text.trim().parse() {
+            Ok(chance) if chance > 0.0 && chance < 1.0 => Ok(Chance(chance)),
+            _ => Err("expected a number above 0 and below 1, such as 0.001".to_owned()),
+        }
+    }
+}
 
 impl FromStr for Scale {
     type Err = String;

@@ -5,9 +5,10 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use cityweld::export::{OutputKind, UnpackedFile};
 use cityweld::format::escaped;
+use cityweld::limits::Limits;
 
 use super::align::carry_out;
-use super::args::{AlignArgs, CityUpArg, DemoArgs, UpArg};
+use super::args::{AlignArgs, Chance, CityUpArg, DemoArgs, UpArg};
 use super::plan::{AlignPlan, keeps_inputs};
 use super::{Outcome, Session};
 
@@ -96,6 +97,7 @@ fn align_args(sample: &Path) -> AlignArgs {
         photos: None,
         scale: None,
         up: UpArg::Auto,
+        false_alarm: Chance(Limits::default().verdict.false_alarm),
         city_up: CityUpArg::Z,
     }
 }

@@ -134,7 +134,9 @@ fn align_options(args: &AlignArgs, seed: u64) -> Result<AlignOptions> {
         UpArg::Given(up) => Up::Given(Vector3::from(up)),
     };
     let fixed_scale = args.scale.map(|scale| scale.0);
-    Ok(AlignOptions { fixed_scale, up, seed, ..AlignOptions::new(start) })
+    let mut options = AlignOptions { fixed_scale, up, seed, ..AlignOptions::new(start) };
+    options.limits.verdict.false_alarm = args.false_alarm.0;
+    Ok(options)
 }
 
 fn superpixel_source(args: &AlignArgs, warnings: &mut Vec<String>) -> Result<Option<SuperpixelSource>> {

@@ -37,6 +37,20 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
     for (index, freedom) in alignment.freedoms.iter().enumerate() {
         table.row(if index == 0 { "freedoms" } else { "" }, freedom_line(freedom));
     }
+    let certainty = &alignment.certainty;
+    if certainty.witnesses > 0 {
+        table.row(
+            "evidence",
+            format!(
+                "{:.1} bits, {:.1} needed; {} of {} planes of the cloud speak for it; by chance {:.1} at most",
+                certainty.bits,
+                certainty.needed_bits,
+                certainty.speaking,
+                certainty.witnesses,
+                certainty.most_bits_by_chance
+            ),
+        );
+    }
     let support = &alignment.support;
     if support.trusted_points > 0 {
         table.row(

@@ -6,7 +6,6 @@
 
 use rayon::prelude::*;
 
-use super::lead::{ballot, lead_sigmas};
 use super::pose_search::largest_shift;
 use super::refine::{Refined, Refiner};
 use super::scene::Scene;
@@ -27,8 +26,6 @@ pub struct Candidate {
     pub prior_cost: f64,
     /// Samples of the search that led here.
     pub hits: usize,
-    /// By how many standard errors the best pose leads this one; see the card of `lead`.
-    pub lead_sigmas: f64,
 }
 
 impl Candidate {
@@ -53,7 +50,7 @@ pub fn candidates(refiner: &Refiner, hypotheses: &Hypotheses) -> Vec<Candidate> 
         candidates = distinct(candidates, scene, stage.keep);
     }
     candidates.iter_mut().for_each(|c| c.refined = settled(refiner, &c.refined.city_from_level));
-    compared_with_the_best(candidates, scene)
+    candidates
 }
 
 /// A pose as a candidate of the last stage, not moved.
@@ -74,7 +71,7 @@ pub fn joined(refiner: &Refiner, own: Vec<Candidate>, others: &[(Similarity, Can
     };
     let all = own.into_iter().chain(others.iter().map(seen_here)).collect();
     let [.., last] = &scene.limits.refinement.stages;
-    compared_with_the_best(distinct(all, scene, last.keep), scene)
+    distinct(all, scene, last.keep)
 }
 
 /// A pose made sharp once more, with a gate as narrow as the residuals allow: what lies beyond is somebody else's facet.
@@ -83,15 +80,6 @@ pub fn settled(refiner: &Refiner, pose: &Similarity) -> Refined {
     let (firm, all) = (probes(scene.votes.firm), probes(scene.votes.probes.len()));
     let sharp = refiner.sharpen(&firm, pose, scene.unit_m);
     settle(refiner, &all, sharp, scene.unit_m, scene.limits.walk.settling_units * scene.unit_m)
-}
-
-fn compared_with_the_best(mut candidates: Vec<Candidate>, scene: &Scene) -> Vec<Candidate> {
-    let ballots: Vec<Vec<f64>> = candidates.iter().map(|c| ballot(scene, &c.refined.city_from_level)).collect();
-    let costs: Vec<f64> = candidates.iter().map(|c| c.prior_cost).collect();
-    for (k, c) in candidates.iter_mut().enumerate().skip(1) {
-        c.lead_sigmas = lead_sigmas(&ballots[0], &ballots[k], costs[k] - costs[0]);
-    }
-    candidates
 }
 
 fn probes(count: usize) -> Vec<u32> {
@@ -106,7 +94,7 @@ fn beside(refiner: &Refiner, candidates: &[Candidate]) -> Vec<Candidate> {
 
 fn unjudged(refiner: &Refiner, pose: &Similarity) -> Candidate {
     let refined = refiner.assess(&[], pose, 0.0);
-    Candidate { refined, share: 0.0, blocked: 0.0, prior_cost: 0.0, hits: 0, lead_sigmas: 0.0 }
+    Candidate { refined, share: 0.0, blocked: 0.0, prior_cost: 0.0, hits: 0 }
 }
 
 fn improved(refiner: &Refiner, stage: &StageLimits, candidate: &Candidate) -> Candidate {
@@ -186,7 +174,6 @@ mod tests {
         let same_m = scene.limits.refinement.same_pose_units * scene.unit_m;
         for (i, c) in candidates.iter().enumerate() {
             assert!(scene.prior.reaches(&c.refined.city_from_level));
-            assert_eq!(i == 0, c.lead_sigmas == 0.0, "{}", c.lead_sigmas);
             for other in &candidates[..i] {
                 assert!(apart_m(scene, c, other) >= same_m, "one pose twice: {}", apart_m(scene, c, other));
             }

@@ -4,8 +4,8 @@
 mod belief;
 mod candidates;
 mod cliques;
+mod contenders;
 mod economy;
-mod lead;
 mod pose_search;
 mod prior;
 mod refine;
@@ -22,12 +22,14 @@ mod walk;
 
 pub use candidates::{Candidate, candidate_at, candidates, joined, settled};
 pub use cliques::{Cliques, Graph};
+pub use contenders::{Place, contenders};
 pub use economy::{Prospect, cheapest, prospects};
 pub use pose_search::{PoseSearch, largest_shift};
 pub use prior::Prior;
 pub use refine::{ProbeOnPlane, Refined, Refiner};
 pub use sampler::{Pair, Sample, Sampler};
 pub use scene::Scene;
+pub use scoring::Mover;
 pub use search::{Hypotheses, NO_SOLVER, search};
 pub use votes::{LevelPatch, Votes};
 pub use walk::{hop, settle, slide};

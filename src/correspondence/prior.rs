@@ -95,6 +95,11 @@ impl Prior {
         self.cost_of_sigma_sq * self.offsets(city_from_level).iter().map(|o| o * o).sum::<f64>()
     }
 
+    /// What is known beforehand for a pose against the expected one, bits: the logarithm of a Gaussian's density.
+    pub fn bits(&self, city_from_level: &Similarity) -> f64 {
+        -0.5 * std::f64::consts::LOG2_E * self.offsets(city_from_level).iter().map(|o| o * o).sum::<f64>()
+    }
+
     /// How many sigmas a pose is from the expected one: heading, log scale, two horizontal axes, height.
     fn offsets(&self, city_from_level: &Similarity) -> [f64; 5] {
         let s = &self.sigmas;

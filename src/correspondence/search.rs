@@ -42,7 +42,7 @@ pub fn search(scene: &Scene, seed: u64, progress: &(dyn Fn(usize, usize) + Sync)
 }
 
 /// What is unknown of the pose in the level frame.
-fn sought(scene: &Scene) -> Sought {
+pub(super) fn sought(scene: &Scene) -> Sought {
     let up = Up::new(&Vector3::z(), &Vector3::z()).filter(|_| scene.prior.up_is_known);
     match (up, scene.prior.motion) {
         (Some(up), Motion::Similarity) => Sought::UprightSimilarity(up),

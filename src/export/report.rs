@@ -6,7 +6,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use crate::city::CityModel;
 use crate::geometry::Similarity;
 use crate::reconstruction::Reconstruction;
-use crate::verdict::{Alignment, Freedom, PlaneEvidence, Support, Verdict};
+use crate::verdict::{Alignment, Certainty, Freedom, PlaneEvidence, Support, Verdict};
 
 const SCHEMA: &str = "cityweld.alignment/1";
 
@@ -85,6 +85,7 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
                 Ok(AlternativeJson { transform, weight: other.weight, differs: &other.differs })
             })
             .collect::<Result<_, serde_json::Error>>()?,
+        certainty: CertaintyJson::of(&alignment.certainty),
         origin: to_raw_value(&alignment.origin.as_slice())?,
         center: to_raw_value(&alignment.center.coords.as_slice())?,
         radius: alignment.radius,
@@ -112,6 +113,7 @@ struct AlignmentJson<'a> {
     transform: Option<SimilarityJson>,
     best_candidate: Option<SimilarityJson>,
     alternatives: Vec<AlternativeJson<'a>>,
+    certainty: CertaintyJson,
     origin: Box<RawValue>,
     /// What `covariance` is about.
     center: Box<RawValue>,
@@ -142,6 +144,35 @@ impl SimilarityJson {
             rotation: rows.collect::<Result<_, _>>()?,
             translation: to_raw_value(&similarity.translation.as_slice())?,
         })
+    }
+}
+
+#[derive(Serialize)]
+struct CertaintyJson {
+    bits: f64,
+    needed_bits: f64,
+    search_bits: f64,
+    probability: f64,
+    false_alarm: f64,
+    witnesses: usize,
+    speaking: usize,
+    by_chance: usize,
+    most_bits_by_chance: f64,
+}
+
+impl CertaintyJson {
+    fn of(certainty: &Certainty) -> CertaintyJson {
+        CertaintyJson {
+            bits: certainty.bits,
+            needed_bits: certainty.needed_bits,
+            search_bits: certainty.search_bits,
+            probability: certainty.probability,
+            false_alarm: certainty.false_alarm,
+            witnesses: certainty.witnesses,
+            speaking: certainty.speaking,
+            by_chance: certainty.by_chance,
+            most_bits_by_chance: certainty.most_bits_by_chance,
+        }
     }
 }
 
@@ -245,6 +276,7 @@ mod tests {
             reason: "all seven freedoms are held by 23 planes".into(),
             best: (verdict != Verdict::Failed).then_some(best),
             alternatives: vec![Alternative { city_from_sfm: best, weight: 0.02, differs: "turned".into() }],
+            certainty: Certainty { bits: 31.5, needed_bits: 12.0, probability: 0.999, ..Certainty::default() },
             origin: Vector3::new(90000.0, 435_000.0, 0.0),
             center: Point3::new(1.0, 2.0, 3.0),
             radius: 12.5,

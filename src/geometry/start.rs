@@ -87,6 +87,11 @@ impl Start {
         &self.sigmas
     }
 
+    /// The same pose with other sigmas, taken as they are.
+    pub(crate) fn with_sigmas(&self, sigmas: StartSigmas) -> Start {
+        Start { sigmas, ..*self }
+    }
+
     /// The same sigmas about another pose.
     pub fn about(&self, city_from_sfm: Similarity) -> Start {
         Start { city_from_sfm, ..*self }

@@ -32,8 +32,8 @@ pub struct GivenScale {
     pub of_data: f64,
     /// One sigma of the logarithm of that; infinite where the data do not hold it.
     pub log_sigma: f64,
-    /// Balance of the pose with the scale free.
-    pub balance: f64,
+    /// Evidence of the pose with the scale free, bits.
+    pub bits: f64,
 }
 
 /// A freedom in numbers.

@@ -2,16 +2,21 @@
 //!
 //! | verdict | when |
 //! |---|---|
-//! | failed | the best pose explains less than a least share of the vote, lines of sight that it blocks taken off |
-//! | ambiguous | a truly different pose explains nearly as much (see below) |
+//! | failed | the evidence for the best pose is no more than chance would find among the poses that were tried |
+//! | ambiguous | a truly different pose is not ruled out by the evidence, or explains more beyond the start's reach |
 //! | undetermined | a freedom is not determined (see [`super::freedoms`]) |
 //! | aligned | otherwise |
 //!
-//! A rival explains nearly as much where its balance comes near the best one's, or somewhat less near while so few patches tell the
-//! two apart that chance may have decided. Differences along freedoms that nothing holds do not count.
+//! Method       Bayes: a pose with b bits of evidence is 2^b times as likely as before the data were seen. Among so many distinct poses chance gives
+//!              one such a lead with a chance of their number times 2^-b; each rival is as likely as its own bits, and the start's,
+//!              say. The chance that the best is wrong is held against the false alarms that are allowed: one number decides all
+//! Source       a-contrario test: Desolneux, Moisan, Morel 2000; the union bound is Bonferroni's
+//!
+//! Differences along freedoms that nothing holds do not count. Beyond three sigmas the start rules a pose out unless that explains
+//! more: a start may be wrong, but where two poses explain the same (the halves of a symmetric block), only the start can tell.
 
 use super::freedoms::{GivenScale, HeldDirection, Hold};
-use super::{Alternative, Verdict, freedoms, words};
+use super::{Alternative, Certainty, Verdict, freedoms, words};
 use crate::geometry::Similarity;
 use crate::limits::VerdictLimits;
 
@@ -20,14 +25,23 @@ use crate::limits::VerdictLimits;
 pub struct Rival {
     /// To absolute city coordinates.
     pub city_from_sfm: Similarity,
+    /// How much likelier is what the cloud meets under this pose than by chance, bits.
+    pub bits: f64,
+    /// What the start says of it against the expected pose, bits: none or less.
+    pub bits_of_start: f64,
+    /// Whether it lies beyond the start's reach.
+    pub beyond_start: bool,
     /// Share of the vote that lies on the city, 0 to 1.
     pub share: f64,
     /// Share of the vote whose lines of sight the city would block.
     pub blocked: f64,
-    /// `share` less `blocked` less the cost of leaving the start.
-    pub balance: f64,
-    /// By how many standard errors of the vote the best pose leads this one.
-    pub lead_sigmas: f64,
+}
+
+impl Rival {
+    /// With what the start says, bits.
+    pub fn all_bits(&self) -> f64 {
+        self.bits + self.bits_of_start
+    }
 }
 
 /// The verdict and what it rests on.
@@ -36,25 +50,30 @@ pub struct Ruling {
     pub verdict: Verdict,
     pub reason: String,
     pub alternatives: Vec<Alternative>,
+    pub certainty: Certainty,
 }
 
 /// Everything that a verdict reads.
 #[derive(Clone, Debug)]
 pub struct Evidence {
-    /// Sorted, best first.
+    /// The best within the start's reach first.
     pub rivals: Vec<Rival>,
     /// What holds the best of them.
     pub hold: Hold,
-    pub has_cameras: bool,
+    /// Planes in space that could speak, and those that speak for the best pose.
+    pub witnesses: usize,
+    pub speaking: usize,
+    /// How many poses were fitted to other places, and the most bits that one of them has.
+    pub by_chance: usize,
+    pub most_by_chance: f64,
 }
 
-/// Rivals whose balance is below this share are not worth telling.
-const WORTH_TELLING: f64 = 0.25;
+/// Rivals that are so much less likely than the best are not worth telling, bits.
+const WORTH_TELLING_BITS: f64 = 20.0;
 
 /// Judges the best of the rivals by the hold that the data have on it.
 pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
-    let Evidence { rivals, hold, has_cameras } = evidence;
-    let least = limits.least_balance_of(*has_cameras);
+    let Evidence { rivals, hold, .. } = evidence;
     let Some(best) = rivals.first() else {
         return Ruling {
             verdict: Verdict::Failed,
@@ -62,30 +81,35 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
                      that the city covers this place"
                 .to_owned(),
             alternatives: Vec::new(),
+            certainty: Certainty { false_alarm: limits.false_alarm, ..Certainty::default() },
         };
     };
     let directions = hold.directions(limits);
     let others: Vec<&Rival> = rivals[1..].iter().filter(|r| differs(best, r, hold, &directions, limits)).collect();
     let alternatives = alternatives(best, &others, hold);
-    let serious = others.iter().filter(|r| is_serious(r, best, limits)).count();
+    let certainty = certainty(evidence, &others, limits);
+    let serious: Vec<&Rival> = others.iter().copied().filter(|r| is_serious(r, best, limits)).collect();
     let contradicted = hold.given_scale.filter(|scale| scale.is_contradicted(hold.chart.radius, limits));
-    let (verdict, reason) = if let Some(scale) = contradicted.filter(|scale| scale.balance >= least) {
+    let (verdict, reason) = if let Some(scale) = contradicted.filter(|scale| scale.bits >= certainty.needed_bits) {
         (Verdict::Undetermined, contradicted_reason(&scale))
-    } else if best.balance < least {
-        (Verdict::Failed, failed_reason(best, least))
-    } else if serious > 0 {
-        (Verdict::Ambiguous, ambiguous_reason(best, serious, &alternatives))
+    } else if certainty.bits < certainty.needed_bits {
+        (Verdict::Failed, failed_reason(&certainty, evidence))
+    } else if let Some(beyond) = serious.iter().find(|r| r.beyond_start) {
+        (Verdict::Ambiguous, beyond_reason(best, beyond, hold))
+    } else if !serious.is_empty() {
+        (Verdict::Ambiguous, ambiguous_reason(best, &serious, hold))
     } else if let Some(reason) = undetermined_reason(hold, limits) {
         (Verdict::Undetermined, reason)
     } else {
-        (Verdict::Aligned, aligned_reason(best, others.first().copied(), hold, limits))
+        (Verdict::Aligned, aligned_reason(best, &others, &certainty, hold, limits))
     };
-    Ruling { verdict, reason, alternatives }
+    Ruling { verdict, reason, alternatives, certainty }
 }
 
+/// Whether the evidence leaves room for a rival: within the start's reach where the lead over it is less than chance may give, beyond it
+/// where it explains more.
 fn is_serious(rival: &Rival, best: &Rival, limits: &VerdictLimits) -> bool {
-    let share = rival.balance / best.balance;
-    share >= limits.rival_share || share >= limits.comparable_share && rival.lead_sigmas < limits.least_lead_sigmas
+    if rival.beyond_start { rival.bits > best.bits } else { best.all_bits() - rival.all_bits() < limits.margin_bits() }
 }
 
 /// True where two poses differ along what the data hold.
@@ -97,14 +121,35 @@ fn differs(a: &Rival, b: &Rival, hold: &Hold, directions: &[HeldDirection], limi
     motion.norm() > limits.same_m
 }
 
+fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> Certainty {
+    let best = &evidence.rivals[0];
+    let within: Vec<&&Rival> = others.iter().filter(|r| !r.beyond_start).collect();
+    let search_bits = (1.0 + within.len() as f64).log2();
+    // Odds against the pose: chance among all that were tried, and each rival.
+    let chance = (search_bits - best.bits).exp2();
+    let of_rivals: f64 = within.iter().map(|r| (r.all_bits() - best.all_bits()).exp2()).sum();
+    Certainty {
+        bits: best.bits,
+        search_bits,
+        needed_bits: search_bits + limits.margin_bits(),
+        probability: 1.0 / (1.0 + chance + of_rivals),
+        false_alarm: limits.false_alarm,
+        witnesses: evidence.witnesses,
+        speaking: evidence.speaking,
+        by_chance: evidence.by_chance,
+        most_bits_by_chance: evidence.most_by_chance,
+    }
+}
+
 fn alternatives(best: &Rival, others: &[&Rival], hold: &Hold) -> Vec<Alternative> {
-    let told: Vec<&&Rival> =
-        others.iter().filter(|r| r.balance > WORTH_TELLING * best.balance && r.balance > 0.0).collect();
-    let total: f64 = best.balance.max(0.0) + told.iter().map(|r| r.balance).sum::<f64>();
+    let lag = |r: &Rival| best.all_bits() - r.all_bits();
+    let mut told: Vec<&Rival> = others.iter().copied().filter(|r| lag(r) < WORTH_TELLING_BITS).collect();
+    told.sort_by(|a, b| b.all_bits().total_cmp(&a.all_bits()));
+    let total: f64 = 1.0 + told.iter().map(|r| (-lag(r)).exp2()).sum::<f64>();
     told.iter()
         .map(|r| Alternative {
             city_from_sfm: r.city_from_sfm,
-            weight: r.balance / total,
+            weight: (-lag(r)).exp2() / total,
             differs: words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.chart.center),
         })
         .collect()
@@ -114,25 +159,43 @@ fn percent(share: f64) -> f64 {
     100.0 * share
 }
 
-fn failed_reason(best: &Rival, least: f64) -> String {
+fn failed_reason(certainty: &Certainty, evidence: &Evidence) -> String {
+    let Certainty { bits, needed_bits, speaking, witnesses, .. } = certainty;
+    let best_by_chance = match evidence.by_chance {
+        0 => String::new(),
+        poses => format!(
+            ", where {poses} poses that were fitted to other places reach {:.1} at most",
+            evidence.most_by_chance
+        ),
+    };
     format!(
-        "the best pose lays {:.0} % of the vote on the city and blocks {:.0} % of the lines of sight, a balance of {:.0} % where {:.0} % is \
-         the least to rely on; check the start, its scale and that the city covers this place",
-        percent(best.share),
-        percent(best.blocked),
-        percent(best.balance),
-        percent(least)
+        "nothing fits better than chance may: {speaking} of the {witnesses} planes that the cloud saw lie on the city in the best pose, which is evidence of \
+         {bits:.1} bits, and {needed_bits:.1} are needed{best_by_chance}; check the start, its scale and that the city covers this place"
     )
 }
 
-fn ambiguous_reason(best: &Rival, serious: usize, alternatives: &[Alternative]) -> String {
-    let how = alternatives.first().map_or(String::new(), |a| format!(" (the heaviest: {})", a.differs));
+fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &Hold) -> String {
+    let heaviest = serious.iter().max_by(|a, b| a.all_bits().total_cmp(&b.all_bits()));
+    let how = heaviest.map_or(String::new(), |r| {
+        let differs = words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.chart.center);
+        format!(
+            " (the likeliest: {differs}; the evidence for the best leads it by {:.1} bits)",
+            best.all_bits() - r.all_bits()
+        )
+    });
     format!(
-        "{serious} other pose{} explain{} the data too well to be ruled out beside the best, which lays {:.0} % of the vote on the city{how}; a start with \
-         smaller sigmas would exclude what is wrong",
-        if serious == 1 { "" } else { "s" },
-        if serious == 1 { "s" } else { "" },
-        percent(best.share)
+        "{} other pose{} cannot be ruled out beside the best{how}; a start with smaller sigmas would exclude what is wrong",
+        serious.len(),
+        if serious.len() == 1 { "" } else { "s" },
+    )
+}
+
+fn beyond_reason(best: &Rival, beyond: &Rival, hold: &Hold) -> String {
+    format!(
+        "beyond three sigmas of the start a pose explains more: {}, evidence of {:.1} bits against {:.1}; check the start, or give it larger sigmas",
+        words::difference(&best.city_from_sfm, &beyond.city_from_sfm, &hold.chart.center),
+        beyond.bits,
+        best.bits
     )
 }
 
@@ -165,19 +228,28 @@ fn undetermined_reason(hold: &Hold, limits: &VerdictLimits) -> Option<String> {
     (!open.is_empty()).then(|| format!("the data do not fix the pose {}", open.join(", nor ")))
 }
 
-fn aligned_reason(best: &Rival, second: Option<&Rival>, hold: &Hold, limits: &VerdictLimits) -> String {
+fn aligned_reason(
+    best: &Rival,
+    others: &[&Rival],
+    certainty: &Certainty,
+    hold: &Hold,
+    limits: &VerdictLimits,
+) -> String {
     let loosest = freedoms(hold, limits).into_iter().find(|f| !f.given);
     let loosest = loosest.map_or(String::new(), |f| {
         let (sigma, unit) = if f.unit == "1" { (percent(f.sigma), "%") } else { (f.sigma, f.unit) };
         format!("; the loosest freedom, {}, is held to {sigma:.2} {unit}", f.name)
     });
+    let second = others.iter().max_by(|a, b| a.bits.total_cmp(&b.bits));
     let runner_up = second.map_or("no other pose explains anything".to_owned(), |r| {
-        format!("the next best pose reaches {:.0} % of that", percent((r.balance / best.balance).max(0.0)))
+        let twin = r.beyond_start && best.bits - r.bits < limits.margin_bits();
+        let note = if twin { " beyond the start's reach, so that the answer rests on the start" } else { "" };
+        format!("the next best pose has {:.0}{note}", r.bits)
     });
+    let Certainty { bits, needed_bits, speaking, witnesses, .. } = certainty;
     format!(
-        "{:.0} % of the vote lies on {} planes of the city and {runner_up}{loosest}",
-        percent(best.share),
-        hold.by_plane.len()
+        "{speaking} of the {witnesses} planes that the cloud saw lie on the city, which is evidence of {bits:.0} bits where {needed_bits:.0} are needed; \
+         {runner_up}{loosest}"
     )
 }
 
@@ -188,9 +260,9 @@ mod tests {
     use crate::limits::Limits;
     use crate::robust::{Chart, Matrix7, Motion};
 
-    fn rival(shift: [f64; 3], share: f64, blocked: f64) -> Rival {
+    fn rival(shift: [f64; 3], bits: f64) -> Rival {
         let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
-        Rival { city_from_sfm, share, blocked, balance: share - blocked, lead_sigmas: 5.0 }
+        Rival { city_from_sfm, bits, bits_of_start: -1.0, beyond_start: false, share: 0.5, blocked: 0.0 }
     }
 
     /// Two planes that hold everything to 0.05 m, but for the freedom `open`.
@@ -207,14 +279,15 @@ mod tests {
         }
     }
 
-    fn ruling(rivals: &[Rival], hold: &Hold, has_cameras: bool) -> Ruling {
-        let evidence = Evidence { rivals: rivals.to_vec(), hold: hold.clone(), has_cameras };
+    fn ruling(rivals: &[Rival], hold: &Hold) -> Ruling {
+        let (rivals, hold) = (rivals.to_vec(), hold.clone());
+        let evidence = Evidence { rivals, hold, witnesses: 20, speaking: 12, by_chance: 128, most_by_chance: 2.0 };
         judge(&evidence, &Limits::default().verdict)
     }
 
     /// The data say 2 % more than what was given, or as much.
     fn with_given_scale(log_off: f64, log_sigma: f64) -> Hold {
-        let given_scale = GivenScale { given: 6.85, of_data: 6.85 * log_off.exp(), log_sigma, balance: 0.8 };
+        let given_scale = GivenScale { given: 6.85, of_data: 6.85 * log_off.exp(), log_sigma, bits: 30.0 };
         let mut hold = hold(None);
         hold.chart.motion = Motion::Rigid;
         Hold { given_scale: Some(given_scale), ..hold }
@@ -222,7 +295,7 @@ mod tests {
 
     #[test]
     fn a_given_scale_that_the_data_contradict_is_undetermined_and_both_are_told() {
-        let wrong = ruling(&[rival([0.0; 3], 0.3, 0.0)], &with_given_scale(-0.049, 0.002), true);
+        let wrong = ruling(&[rival([0.0; 3], 3.0)], &with_given_scale(-0.049, 0.002));
         assert_eq!(wrong.verdict, Verdict::Undetermined);
         assert!(
             wrong.reason.contains("the data say 6.522") && wrong.reason.contains("given was 6.85"),
@@ -234,7 +307,7 @@ mod tests {
     #[test]
     fn a_given_scale_within_the_sigmas_of_the_data_or_of_the_model_is_aligned() {
         for (off, sigma) in [(0.02, 0.01), (0.005, 0.0001), (0.05, f64::INFINITY)] {
-            let right = ruling(&[rival([0.0; 3], 0.8, 0.0)], &with_given_scale(off, sigma), true);
+            let right = ruling(&[rival([0.0; 3], 30.0)], &with_given_scale(off, sigma));
             assert_eq!(right.verdict, Verdict::Aligned, "{}", right.reason);
         }
     }
@@ -248,47 +321,65 @@ mod tests {
 
     #[test]
     fn is_aligned_when_all_is_held_and_nothing_rivals() {
-        let ruling = ruling(&[rival([0.0; 3], 0.8, 0.02), rival([5.0, 0.0, 0.0], 0.3, 0.2)], &hold(None), true);
+        let ruling = ruling(&[rival([0.0; 3], 30.0), rival([5.0, 0.0, 0.0], 3.0)], &hold(None));
         assert_eq!(ruling.verdict, Verdict::Aligned, "{}", ruling.reason);
+        assert!(ruling.certainty.probability > 0.999_999, "{:?}", ruling.certainty);
     }
 
     #[test]
     fn is_undetermined_along_up_when_only_walls_hold() {
-        let ruling = ruling(&[rival([0.0; 3], 0.8, 0.0)], &hold(Some(5)), true);
+        let ruling = ruling(&[rival([0.0; 3], 30.0)], &hold(Some(5)));
         assert_eq!(ruling.verdict, Verdict::Undetermined);
         assert!(ruling.reason.contains("along up") && ruling.reason.contains("--terrain"), "{}", ruling.reason);
     }
 
     #[test]
     fn a_shift_along_what_is_open_is_no_rival_and_any_other_is() {
-        let same = ruling(&[rival([0.0; 3], 0.8, 0.0), rival([0.0, 0.0, 4.0], 0.79, 0.0)], &hold(Some(5)), true);
+        let same = ruling(&[rival([0.0; 3], 30.0), rival([0.0, 0.0, 4.0], 29.0)], &hold(Some(5)));
         assert_eq!(same.verdict, Verdict::Undetermined);
-        let other = ruling(&[rival([0.0; 3], 0.8, 0.0), rival([4.0, 0.0, 0.0], 0.79, 0.0)], &hold(None), true);
+        let other = ruling(&[rival([0.0; 3], 30.0), rival([4.0, 0.0, 0.0], 29.0)], &hold(None));
         assert_eq!(other.verdict, Verdict::Ambiguous);
         assert_eq!(other.alternatives.len(), 1);
         assert!(other.alternatives[0].differs.contains("shifted by (4.00, 0.00, 0.00) m"));
+        // One bit: half as likely.
+        assert!((other.alternatives[0].weight - 1.0 / 3.0).abs() < 1e-12 && other.certainty.probability < 0.7);
     }
 
     #[test]
-    fn a_lead_that_chance_explains_is_ambiguous() {
-        let verdict = |share: f64, lead_sigmas: f64| {
-            let behind = Rival { lead_sigmas, ..rival([5.0, 0.0, 0.0], share, 0.0) };
-            ruling(&[rival([0.0; 3], 0.8, 0.0), behind], &hold(None), true).verdict
+    fn evidence_that_chance_may_give_to_one_of_the_poses_tried_fails() {
+        let verdict = |bits: f64, others: usize| {
+            let others = (1..=others).map(|k| rival([5.0 * k as f64, 0.0, 0.0], -20.0));
+            let all: Vec<Rival> = std::iter::once(rival([0.0; 3], bits)).chain(others).collect();
+            ruling(&all, &hold(None)).verdict
         };
-        assert_eq!(verdict(0.6, 1.0), Verdict::Ambiguous);
-        assert_eq!(verdict(0.6, 3.0), Verdict::Aligned);
-        assert_eq!(verdict(0.4, 1.0), Verdict::Aligned);
+        // One in a thousand: ten bits; of eight poses one may have three more by chance.
+        assert_eq!([9.9, 10.0].map(|bits| verdict(bits, 0)), [Verdict::Failed, Verdict::Aligned]);
+        assert_eq!([12.9, 13.0].map(|bits| verdict(bits, 7)), [Verdict::Failed, Verdict::Aligned]);
+        assert_eq!(ruling(&[], &hold(None)).verdict, Verdict::Failed);
     }
 
     #[test]
-    fn blocked_lines_of_sight_fail_a_pose_that_fits_walls() {
-        assert_eq!(ruling(&[rival([0.0; 3], 0.42, 0.4)], &hold(None), true).verdict, Verdict::Failed);
-        assert_eq!(ruling(&[], &hold(None), true).verdict, Verdict::Failed);
+    fn a_rival_within_the_margin_is_ambiguous_and_the_start_has_its_say() {
+        let verdict = |bits: f64, bits_of_start: f64| {
+            let second = Rival { bits_of_start, ..rival([5.0, 0.0, 0.0], bits) };
+            ruling(&[rival([0.0; 3], 40.0), second], &hold(None)).verdict
+        };
+        assert_eq!([29.0, 31.0].map(|bits| verdict(bits, -1.0)), [Verdict::Aligned, Verdict::Ambiguous]);
+        assert_eq!(verdict(31.0, -4.0), Verdict::Aligned);
     }
 
     #[test]
-    fn without_cameras_half_of_the_vote_must_lie_on_the_city() {
-        assert_eq!(ruling(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), true).verdict, Verdict::Aligned);
-        assert_eq!(ruling(&[rival([0.0; 3], 0.4, 0.0)], &hold(None), false).verdict, Verdict::Failed);
+    fn beyond_the_start_a_twin_is_told_and_only_what_explains_more_is_a_rival() {
+        let with = |bits: f64| {
+            let twin = Rival { beyond_start: true, ..rival([60.0, 0.0, 0.0], bits) };
+            ruling(&[rival([0.0; 3], 40.0), twin], &hold(None))
+        };
+        let (twin, better, worse) = (with(39.9), with(40.1), with(20.0));
+        assert_eq!(
+            [&twin, &better, &worse].map(|r| r.verdict),
+            [Verdict::Aligned, Verdict::Ambiguous, Verdict::Aligned]
+        );
+        assert!(twin.reason.contains("rests on the start") && !worse.reason.contains("rests on the start"));
+        assert!(better.reason.contains("beyond three sigmas of the start"), "{}", better.reason);
     }
 }

@@ -46,6 +46,8 @@ pub struct Alignment {
     pub best: Option<Similarity>,
     /// Other distinct poses, heaviest first.
     pub alternatives: Vec<Alternative>,
+    /// What speaks for the best pose.
+    pub certainty: Certainty,
     /// Local origin of the city model, metres.
     pub origin: Vector3<f64>,
     /// Centre of the scene that the covariance is about, absolute city coordinates.
@@ -59,6 +61,27 @@ pub struct Alignment {
     pub evidence: Vec<PlaneEvidence>,
     pub search: SearchSummary,
     pub warnings: Vec<String>,
+}
+
+/// How sure the best pose is that of the data, and not one that chance fits as well.
+#[derive(Clone, Debug, Default)]
+pub struct Certainty {
+    /// How much likelier is what the cloud meets in the city under the pose than under poses fitted to other places: log2.
+    pub bits: f64,
+    /// log2 of the number of distinct poses among which it is the best.
+    pub search_bits: f64,
+    /// What the bits must reach: those of the search and of the false alarms that are allowed.
+    pub needed_bits: f64,
+    /// That the pose is right, if one within the start's reach is.
+    pub probability: f64,
+    /// The chance of a wrong `aligned` that is allowed.
+    pub false_alarm: f64,
+    /// Planes in space that the cloud saw: what can speak for a pose; and how many do, by half a bit or more.
+    pub witnesses: usize,
+    pub speaking: usize,
+    /// Poses that were fitted to other places, and the largest evidence of one of them.
+    pub by_chance: usize,
+    pub most_bits_by_chance: f64,
 }
 
 /// Another pose that explains the data.

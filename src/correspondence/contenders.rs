@@ -1,0 +1,119 @@
+//! Poses fitted to the city by chance: what a wrong answer of the search looks like.
+//!
+//! Question     how well do poses lie on the city that were found as the answer was, but at other places?
+//! Input        a scene whose prior reaches beyond the search's, over places where the cloud does not stand
+//! Output       poses, each the best of a batch of minimal samples, refined
+//! Method       the search's own samples, scores and refinement, in batches of fixed size; each batch gives one pose
+//! Why          poses at random places lie on far fewer planes than poses that were fitted; a chance taken from them makes every
+//!              fitted pose look right
+
+use rayon::prelude::*;
+
+use super::economy::{cheapest, prospects};
+use super::pose_search::PoseSearch;
+use super::refine::{Refined, Refiner};
+use super::sampler::Sampler;
+use super::search::sought;
+use crate::geometry::Similarity;
+use crate::limits::ContenderLimits;
+use crate::robust::{Chart, Direction, Problem, Random};
+
+/// So many poses, none of which the refinement leads to the place of `answer`; fewer where the samples allow no more.
+pub fn contenders(refiner: &Refiner, answer: &Place, seed: u64, limits: &ContenderLimits) -> Vec<Refined> {
+    let scene = refiner.scene;
+    let (sampler, sought, panel) = (Sampler::new(scene), sought(scene), scene.votes.panel(limits.ranking_probes));
+    let with = |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, panel: &panel };
+    let searches: Vec<PoseSearch> = sought.configurations().iter().map(with).collect();
+    let Some(configuration) = cheapest(&prospects(&searches, &scene.limits.search), &scene.limits.search) else {
+        return Vec::new();
+    };
+    let search = with(&configuration);
+    let refining = scene.votes.panel(limits.refining_probes);
+    let gates_m: Vec<f64> = limits.gates_units.iter().map(|gate| gate * scene.unit_m).collect();
+    let is_elsewhere = |pose: &Similarity| !answer.has(pose);
+    let of_batch = |batch: u64| {
+        let best = best_of(&search, seed, batch, limits.samples, is_elsewhere)?;
+        let refined = refiner.refine(&refining, &best, &gates_m);
+        is_elsewhere(&refined.city_from_level).then_some(refined)
+    };
+    let mut found: Vec<Refined> = Vec::with_capacity(limits.count);
+    for round in 0..limits.most_rounds {
+        let first = round * limits.count as u64;
+        let batches = first..first + limits.count as u64;
+        let round: Vec<Option<Refined>> = batches.into_par_iter().map(of_batch).collect();
+        found.extend(round.into_iter().flatten());
+        if found.len() >= limits.count {
+            found.truncate(limits.count);
+            break;
+        }
+    }
+    found
+}
+
+/// The best pose elsewhere of so many samples; the first of equals.
+fn best_of(
+    search: &PoseSearch,
+    seed: u64,
+    batch: u64,
+    samples: usize,
+    is_elsewhere: impl Fn(&Similarity) -> bool,
+) -> Option<Similarity> {
+    let mut random = Random::stream(seed, STREAMS_OF_SEARCH + batch);
+    let mut poses = Vec::new();
+    let mut best: Option<(f64, Similarity)> = None;
+    for _ in 0..samples {
+        poses.clear();
+        search.hypothesize(&mut random, &mut poses);
+        for pose in poses.iter().filter(|pose| is_elsewhere(pose)) {
+            let score = search.score(pose);
+            if score.is_finite() && best.as_ref().is_none_or(|(most, _)| score > *most) {
+                best = Some((score, *pose));
+            }
+        }
+    }
+    best.map(|(_, pose)| pose)
+}
+
+/// Streams of the seed that a search may have drawn from.
+const STREAMS_OF_SEARCH: u64 = 1 << 32;
+
+/// The place of an answer, as far as the data hold it: what leads there is no other place.
+pub struct Place<'a> {
+    pose: Similarity,
+    chart: Chart,
+    /// The directions along which nothing holds the answer.
+    open: Vec<Direction>,
+    limits: &'a ContenderLimits,
+}
+
+impl<'a> Place<'a> {
+    /// The place of a refined pose; directions that are held worse than `held_m` are open.
+    pub fn of(answer: &Refined, held_m: f64, limits: &'a ContenderLimits) -> Place<'a> {
+        let spectrum = answer.chart.spectrum(&answer.equations.full());
+        let open = spectrum.directions().iter().filter(|d| d.sigma_m > held_m).copied().collect();
+        Place { pose: answer.city_from_level, chart: answer.chart, open, limits }
+    }
+
+    /// The place of a pose of which nothing is open.
+    pub fn around(refiner: &Refiner<'a>, pose: &Similarity) -> Place<'a> {
+        let Refined { chart, .. } = refiner.assess(&[], pose, 0.0);
+        Place { pose: *pose, chart, open: Vec::new(), limits: &refiner.scene.limits.contenders }
+    }
+
+    pub fn pose(&self) -> &Similarity {
+        &self.pose
+    }
+
+    /// Whether refinement leads a pose there, but for what is open.
+    pub fn has(&self, pose: &Similarity) -> bool {
+        let mut apart = self.chart.between(&self.pose, pose);
+        for direction in &self.open {
+            apart -= direction.unit * direction.unit.dot(&apart);
+        }
+        let part = |first: usize| apart.fixed_rows::<3>(first).norm();
+        let r = self.chart.radius;
+        part(0) < self.limits.basin_rad * r
+            && part(3) < self.limits.basin_m
+            && apart[6].abs() < self.limits.basin_log_scale * r
+    }
+}

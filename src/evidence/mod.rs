@@ -1,0 +1,14 @@
+//! Evidence against chance, in bits: how much likelier is what the cloud meets in the city under a pose than under poses that were fitted to
+//! other places?
+
+mod bits;
+mod chance;
+mod contest;
+mod outcomes;
+mod witnesses;
+
+pub use bits::{Weighed, log2_mean_exp2, weigh};
+pub use chance::Chance;
+pub use contest::{Contest, Contestant};
+pub use outcomes::{KINDS, Outcomes, outcomes};
+pub use witnesses::{Class, Piece, Witnesses};

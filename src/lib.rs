@@ -15,6 +15,7 @@ pub mod robust;
 pub mod planes;
 pub mod correspondence;
 pub mod evidence;
+pub mod uncertainty;
 pub mod verdict;
 pub mod merging;
 pub mod export;

@@ -45,6 +45,7 @@ pub struct Limits {
     pub sight: SightLimits,
     pub contenders: ContenderLimits,
     pub evidence: EvidenceLimits,
+    pub uncertainty: UncertaintyLimits,
     pub verdict: VerdictLimits,
 }
 
@@ -295,6 +296,60 @@ pub struct SightLimits {
     pub camera_slack_m: f64,
 }
 
+/// What errs together in a model and a reconstruction, and by how much before anything is seen of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UncertaintyLimits {
+    /// Points lie on a surface within this, units. Chosen: twice a vote's, so that buildings which stand off by as much as half a metre
+    /// are seen to.
+    pub gate_units: f64,
+    /// Rounds in which points are put on facets anew. Chosen.
+    pub rounds: usize,
+    /// Steps in which spreads and unknowns settle in a round. Chosen.
+    pub steps: usize,
+    /// Width of a piece of surface that is one observation. Chosen: windows and bays repeat every two to four metres.
+    pub piece_m: f64,
+    /// An object that is larger is no building, and is taken apart ... Chosen.
+    pub largest_building_m: f64,
+    /// ... into squares of this width. Chosen: a building's width.
+    pub square_m: f64,
+    /// A turn is not felt by less than this. Chosen: half a small house.
+    pub least_lever_m: f64,
+    /// Planes of a building are one in space within this angle and distance. Measured on wrong poses: what is nearer fits or
+    /// misses together.
+    pub same_front_deg: f64,
+    pub same_front_m: f64,
+    /// One sigma of a building's shift, of a front's offset and tilts, and of a piece, before anything is seen of them. Measured on models of
+    /// others: some centimetres where surveyed, two to five decimetres where generalised; between.
+    pub building_sigma_m: f64,
+    pub front_sigma_m: f64,
+    pub piece_sigma_m: f64,
+    /// ... of the reconstruction's bending, as a share of its radius. Derived: reconstructions bend by 0.1 to 0.5 % of their extent at
+    /// most; two radii, and half of the most as root mean square.
+    pub bending_share: f64,
+    /// How many observations these are worth. Chosen: little, so that data decide where there are any.
+    pub building_worth: f64,
+    pub front_worth: f64,
+    pub piece_worth: f64,
+    pub bending_worth: f64,
+    /// One sigma of how far walls stand inside the model's. Measured on LoD1 and LoD2 models drawn from roofs: 0.2 to 0.5 m.
+    pub walls_sigma_m: f64,
+    /// One sigma of how far tops are from the model's, where all are level (LoD1: half-way up pitched roofs) and where they are not.
+    /// Chosen.
+    pub lids_sigma_m: f64,
+    pub roofs_sigma_m: f64,
+    /// Degrees of freedom of the tails of buildings, fronts, pieces and points. Chosen: between Gaussian and Cauchy's, as Lange, Little and
+    /// Taylor (1989) take.
+    pub tails: f64,
+    /// Fewest buildings whose scatter is asked. Derived: as many as a pose has unknowns, and one.
+    pub fewest_left_out: usize,
+    /// What is common to all walls or tops, and bending, is told where it is so many sigmas beyond chance ... Derived: one in a thousand.
+    pub told_sigmas: f64,
+    /// ... and as large as this. Chosen: what a survey of buildings would note.
+    pub told_m: f64,
+    /// A freedom is confirmed where it is held to this many times what is asked when any one front is left out. Chosen.
+    pub confirmed_times: f64,
+}
+
 /// What a verdict asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerdictLimits {
@@ -305,6 +360,8 @@ pub struct VerdictLimits {
     /// A freedom that the data hold worse than this is not determined, at the scene's radius. Chosen: a window's width is what a
     /// user would see.
     pub determined_m: f64,
+    /// ... or than this share of the radius, where that is more. Chosen: reconstructions bend by as much.
+    pub determined_share: f64,
     /// Fewest points that hold a plane. Derived: a single point lies on a plane by chance.
     pub fewest_on_plane: usize,
     /// Gates that lead from a given scale to the data's own, units. Derived: from the search's to a vote's, step by step.
@@ -319,6 +376,11 @@ impl VerdictLimits {
     /// How much likelier than all that speaks against it a pose must be, in bits.
     pub fn margin_bits(&self) -> f64 {
         -self.false_alarm.log2()
+    }
+
+    /// What a freedom must be held to where nothing else is asked for, metres at this radius.
+    pub fn accuracy_m(&self, radius_m: f64) -> f64 {
+        self.determined_m.max(self.determined_share * radius_m)
     }
 }
 
@@ -455,10 +517,38 @@ impl Default for Limits {
                 blocked_when_right: 0.05,
                 unseen_contenders: 1.0,
             },
+            uncertainty: UncertaintyLimits {
+                gate_units: 2.0,
+                rounds: 3,
+                steps: 8,
+                piece_m: 2.0,
+                largest_building_m: 80.0,
+                square_m: 25.0,
+                least_lever_m: 5.0,
+                same_front_deg: 8.0,
+                same_front_m: 0.5,
+                building_sigma_m: 0.1,
+                front_sigma_m: 0.05,
+                piece_sigma_m: 0.03,
+                bending_share: 0.0025,
+                building_worth: 4.0,
+                front_worth: 4.0,
+                piece_worth: 4.0,
+                bending_worth: 5.0,
+                walls_sigma_m: 0.3,
+                lids_sigma_m: 0.5,
+                roofs_sigma_m: 0.1,
+                tails: 6.0,
+                fewest_left_out: 8,
+                told_sigmas: 3.1,
+                told_m: 0.1,
+                confirmed_times: 3.0,
+            },
             verdict: VerdictLimits {
                 false_alarm: 0.001,
                 same_m: 0.8,
                 determined_m: 0.35,
+                determined_share: 0.01,
                 fewest_on_plane: 2,
                 scale_gates_units: &[5.0, 5.0, 4.0, 3.3, 2.7, 2.3, 2.0, 1.7, 1.3, 1.0],
                 scale_sigmas: 3.0,

@@ -17,6 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["limits", "geometry", "city", "planes", "solvers", "robust"]),
     ("evidence", &["limits", "geometry", "correspondence"]),
+    ("uncertainty", &["limits", "geometry", "city", "planes", "correspondence", "robust"]),
     ("verdict", &["limits", "geometry", "robust"]),
     (
         "merging",
@@ -35,6 +36,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "planes",
             "correspondence",
             "evidence",
+            "uncertainty",
             "verdict",
         ],
     ),

@@ -4,6 +4,7 @@ use crate::correspondence::{Candidate, ProbeOnPlane, Refiner, Scene, settled};
 use crate::evidence::{Contest, Contestant};
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Matrix7};
+use crate::uncertainty::{Estimate, Findings, estimate};
 use crate::verdict::{Evidence, GivenScale, Hold, Rival};
 
 /// The evidence, and the points that it rests on.
@@ -13,6 +14,7 @@ pub(super) struct Gathered {
     pub rows: Vec<ProbeOnPlane>,
     /// Points that belong to a patch.
     pub firm: usize,
+    pub findings: Findings,
 }
 
 /// All poses that may be right, each with its evidence: the best first, then by what evidence and start say together. The search's
@@ -38,61 +40,69 @@ pub(super) fn heard(contest: &Contest, scene: &Scene, candidates: &[Candidate]) 
     all
 }
 
-/// Gathers what the verdict reads of the poses that were heard; `given_scale` where the scale was given.
+/// Gathers what the verdict reads of the poses that were heard; `given_scale` where the scale was given, `accuracy_m` where one is asked for.
 pub(super) fn gather(
     refiner: &Refiner,
     contest: Option<&Contest>,
     contestants: &[Contestant],
     given_scale: Option<GivenScale>,
+    accuracy_m: Option<f64>,
 ) -> Gathered {
     let scene = refiner.scene;
-    let best = contestants.first();
-    let rows = best.map_or(Vec::new(), |best| rows(refiner, &best.candidate.refined.city_from_level));
-    let chart = best.map_or(chart_of_prior(refiner), |best| best.candidate.refined.chart);
-    let hold = Hold {
-        chart: Chart { center: chart.center + scene.city.model.origin, ..chart },
-        by_plane: by_plane(refiner, &chart, &rows),
-        prior: scene.prior.information(&chart),
-        given_scale,
-    };
+    let best = contestants.first().map(|best| estimate(refiner, &best.candidate.refined.city_from_level));
+    let rows = best.as_ref().map_or(Vec::new(), |best| rows(refiner, &best.city_from_level));
+    let hold = hold(refiner, best.as_ref(), given_scale, accuracy_m);
+    let findings = best.as_ref().map_or(Findings::default(), |best| best.findings);
+    let pose = |c: &Contestant| c.candidate.refined.city_from_level;
+    let mut rivals: Vec<Rival> = contestants.iter().map(|c| rival(refiner, c, &pose(c))).collect();
+    if let (Some(first), Some(best)) = (contestants.first(), &best) {
+        rivals[0] = rival(refiner, first, &best.city_from_level);
+    }
     let by_chance = contest.map_or(&[][..], |contest| &contest.by_chance);
+    let speaks = |c: &Contestant| c.weighed.by_witness.iter().filter(|bits| **bits >= SPEAKS_BITS).count();
     let evidence = Evidence {
-        rivals: contestants.iter().map(|c| rival(refiner, c)).collect(),
+        rivals,
         hold,
         witnesses: contest.map_or(0, Contest::witnesses),
-        speaking: best.map_or(0, |best| best.weighed.by_witness.iter().filter(|bits| **bits >= SPEAKS_BITS).count()),
+        speaking: contestants.first().map_or(0, speaks),
         by_chance: by_chance.len(),
         most_by_chance: by_chance.first().copied().unwrap_or(0.0),
     };
-    Gathered { evidence, rows, firm: scene.votes.firm }
+    Gathered { evidence, rows, firm: scene.votes.firm, findings }
 }
 
 /// A plane speaks for a pose from so many bits on. Chosen: what chance gives to two in three.
 const SPEAKS_BITS: f64 = 0.5;
+
+fn hold(refiner: &Refiner, best: Option<&Estimate>, given_scale: Option<GivenScale>, accuracy_m: Option<f64>) -> Hold {
+    let (scene, limits) = (refiner.scene, refiner.scene.limits);
+    let chart = best.map_or_else(|| chart_of_prior(refiner), |best| best.chart);
+    Hold {
+        chart: Chart { center: chart.center + scene.city.model.origin, ..chart },
+        information: best.map_or_else(Matrix7::zeros, |best| best.information),
+        without: best.map_or(Vec::new(), |best| best.without.clone()),
+        prior: scene.prior.information(&chart),
+        given_scale,
+        accuracy_m: accuracy_m.unwrap_or(limits.verdict.accuracy_m(chart.radius)),
+        confirmed_times: limits.uncertainty.confirmed_times,
+    }
+}
 
 fn rows(refiner: &Refiner, pose: &Similarity) -> Vec<ProbeOnPlane> {
     let all: Vec<u32> = (0..refiner.scene.votes.probes.len() as u32).collect();
     refiner.probes_on_planes(&all, pose, refiner.scene.unit_m)
 }
 
-/// The information of each plane with enough points.
-fn by_plane(refiner: &Refiner, chart: &Chart, rows: &[ProbeOnPlane]) -> Vec<Matrix7> {
-    let fewest = refiner.scene.limits.verdict.fewest_on_plane;
-    let planes = rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).filter(|plane| plane.len() >= fewest);
-    planes.map(|plane| refiner.equations_of_plane(chart, plane).full()).collect()
-}
-
-fn rival(refiner: &Refiner, contestant: &Contestant) -> Rival {
+fn rival(refiner: &Refiner, contestant: &Contestant, city_from_level: &Similarity) -> Rival {
     let (scene, candidate) = (refiner.scene, &contestant.candidate);
-    let pose = &candidate.refined.city_from_level;
-    let local = scene.city_from_sfm(pose);
+    let local = scene.city_from_sfm(city_from_level);
     Rival {
         city_from_sfm: Similarity { translation: local.translation + scene.city.model.origin, ..local },
         share: candidate.share,
         blocked: candidate.blocked,
         bits: contestant.weighed.bits,
-        bits_of_start: scene.prior.bits(pose),
-        beyond_start: !scene.prior.reaches(pose),
+        bits_of_start: scene.prior.bits(city_from_level),
+        beyond_start: !scene.prior.reaches(&candidate.refined.city_from_level),
     }
 }
 
@@ -113,11 +123,12 @@ pub(super) fn scale_from(refiner: &Refiner, contest: &Contest, candidate: &Candi
 /// The scale of a pose that was found with the scale free, beside the given one.
 pub(super) fn scale_at(free: &Refiner, contest: &Contest, pose: &Similarity) -> GivenScale {
     let scene = free.scene;
-    let chart = free.assess(&[], pose, 0.0).chart;
+    let found = estimate(free, pose);
+    let (pose, chart) = (&found.city_from_level, found.chart);
     // What is known beforehand of all else keeps an open height from opening the scale.
     let mut information = scene.prior.information(&chart);
     information[(6, 6)] = 0.0;
-    information += by_plane(free, &chart, &rows(free, pose)).iter().sum::<Matrix7>();
+    information += found.information;
     let variance = information.try_inverse().map_or(0.0, |covariance| covariance[(6, 6)]);
     let given = scene.votes.level_from_sfm.scale;
     GivenScale {

@@ -36,6 +36,8 @@ pub struct AlignOptions {
     /// Metres per sfm unit, held fixed, in place of the start's; free where `None`.
     pub fixed_scale: Option<f64>,
     pub up: Up,
+    /// What a freedom must be held to, metres at the scene's radius; where `None`, as the limits say.
+    pub accuracy_m: Option<f64>,
     /// Same seed, same answer, whatever the number of threads.
     pub seed: u64,
     pub limits: Limits,
@@ -44,7 +46,7 @@ pub struct AlignOptions {
 impl AlignOptions {
     /// Everything but the start as most users want it.
     pub fn new(start: Start) -> AlignOptions {
-        AlignOptions { start, fixed_scale: None, up: Up::Auto, seed: 0, limits: Limits::default() }
+        AlignOptions { start, fixed_scale: None, up: Up::Auto, accuracy_m: None, seed: 0, limits: Limits::default() }
     }
 }
 
@@ -76,7 +78,7 @@ pub fn align(
         contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
     let refiner = Refiner::new(&view.scene);
     let given_scale = options.fixed_scale.and_then(|_| task.scale_of_data(&refiner, contest.as_ref()?, &contestants));
-    let holding = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale);
+    let holding = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale, options.accuracy_m);
     let ruling = judge(&holding.evidence, &options.limits.verdict);
     let up_elsewhere = up_elsewhere(&ruling, &patches, &start, options);
     report::tell(ruling, holding, &view.hypotheses, &patches, up_elsewhere, city, options)

@@ -6,7 +6,10 @@ use super::obstacle::Obstacle;
 use crate::correspondence::{Hypotheses, NO_SOLVER, ProbeOnPlane};
 use crate::geometry::Point3;
 use crate::planes::{Patches, PreparedCity, UpCandidate};
-use crate::verdict::{Alignment, Certainty, PlaneEvidence, Ruling, SearchSummary, Support, Verdict, freedoms};
+use crate::uncertainty::Findings;
+use crate::verdict::{
+    Alignment, Certainty, ModelErrors, PlaneEvidence, Ruling, SearchSummary, Support, Verdict, freedoms,
+};
 
 /// The alignment that a ruling makes of what was found.
 pub(super) fn tell(
@@ -18,7 +21,7 @@ pub(super) fn tell(
     city: &PreparedCity,
     options: &AlignOptions,
 ) -> Alignment {
-    let Gathered { evidence, rows, firm } = found;
+    let Gathered { evidence, rows, firm, findings } = found;
     let (rivals, hold) = (&evidence.rivals, &evidence.hold);
     Alignment {
         verdict: ruling.verdict,
@@ -29,6 +32,8 @@ pub(super) fn tell(
         origin: city.model.origin,
         center: hold.chart.center,
         radius: hold.chart.radius,
+        accuracy_m: hold.accuracy_m,
+        model_errors: model_errors(&findings),
         freedoms: if rivals.is_empty() { Vec::new() } else { freedoms(hold, &options.limits.verdict) },
         covariance: hold.covariance(),
         support: support(&rows, firm),
@@ -38,7 +43,17 @@ pub(super) fn tell(
             samples: hypotheses.samples as u64,
             seed: options.seed,
         },
-        warnings: warnings(patches),
+        warnings: warnings(patches).into_iter().chain(findings.worth_telling(&options.limits.uncertainty)).collect(),
+    }
+}
+
+fn model_errors(findings: &Findings) -> ModelErrors {
+    ModelErrors {
+        walls_inset: [findings.walls_inset_m, findings.walls_inset_sigma_m],
+        tops_lower: [findings.tops_lower_m, findings.tops_lower_sigma_m],
+        buildings: findings.buildings_m,
+        fronts: findings.fronts_m,
+        bending: findings.bending_m,
     }
 }
 
@@ -58,6 +73,8 @@ pub(super) fn refused(
         origin: city.model.origin,
         center: Point3::from(city.model.origin),
         radius: 0.0,
+        accuracy_m: options.accuracy_m.unwrap_or(options.limits.verdict.determined_m),
+        model_errors: ModelErrors::default(),
         freedoms: Vec::new(),
         covariance: [[0.0; 7]; 7],
         support: Support::default(),

@@ -116,6 +116,10 @@ pub struct AlignArgs {
     /// Scale that is known, metres per reconstruction unit: held exactly, in place of the start's [default: free]
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub scale: Option<Scale>,
+    /// What every freedom must be held to, one sigma in metres at the scene's radius, for the verdict to be aligned [default: 0.35 or 1 % of
+    /// the radius, whichever is more]
+    #[arg(long, value_name = "METRES")]
+    pub accuracy: Option<Accuracy>,
     /// Up in the reconstruction's frame: auto (walls, floors, cameras and start tell together), none (not used: the search turns
     /// freely, as far as three sigmas of the start's tilt), or X,Y,Z of any length
     #[arg(long, value_name = "UP", default_value = "auto", allow_hyphen_values = true)]
@@ -308,6 +312,21 @@ impl FromStr for Scale {
         match numbers(text).as_deref() {
             Some([scale]) if *scale > 0.0 => Ok(Scale(*scale)),
             _ => Err("expected a finite number above 0: metres per reconstruction unit".into()),
+        }
+    }
+}
+
+/// `--accuracy`, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy(pub f64);
+
+impl FromStr for Accuracy {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Accuracy, String> {
+        match numbers(text).as_deref() {
+            Some([metres]) if *metres > 0.0 => Ok(Accuracy(*metres)),
+            _ => Err("expected a finite number above 0: metres".into()),
         }
     }
 }

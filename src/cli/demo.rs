@@ -96,6 +96,7 @@ fn align_args(sample: &Path) -> AlignArgs {
         labels: Some(sample.join("labels")),
         photos: None,
         scale: None,
+        accuracy: None,
         up: UpArg::Auto,
         false_alarm: Chance(Limits::default().verdict.false_alarm),
         city_up: CityUpArg::Z,

@@ -134,7 +134,8 @@ fn align_options(args: &AlignArgs, seed: u64) -> Result<AlignOptions> {
         UpArg::Given(up) => Up::Given(Vector3::from(up)),
     };
     let fixed_scale = args.scale.map(|scale| scale.0);
-    let mut options = AlignOptions { fixed_scale, up, seed, ..AlignOptions::new(start) };
+    let accuracy_m = args.accuracy.map(|accuracy| accuracy.0);
+    let mut options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::new(start) };
     options.limits.verdict.false_alarm = args.false_alarm.0;
     Ok(options)
 }

@@ -6,7 +6,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use crate::city::CityModel;
 use crate::geometry::Similarity;
 use crate::reconstruction::Reconstruction;
-use crate::verdict::{Alignment, Certainty, Freedom, PlaneEvidence, Support, Verdict};
+use crate::verdict::{Alignment, Certainty, Freedom, ModelErrors, PlaneEvidence, Support, Verdict};
 
 const SCHEMA: &str = "cityweld.alignment/1";
 
@@ -89,6 +89,8 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         origin: to_raw_value(&alignment.origin.as_slice())?,
         center: to_raw_value(&alignment.center.coords.as_slice())?,
         radius: alignment.radius,
+        accuracy: alignment.accuracy_m,
+        model_errors: model_errors_json(&alignment.model_errors)?,
         freedoms: alignment.freedoms.iter().map(freedom_json).collect::<Result<_, _>>()?,
         covariance: alignment.covariance.iter().map(to_raw_value).collect::<Result<_, _>>()?,
         support: SupportJson::of(&alignment.support),
@@ -118,6 +120,9 @@ struct AlignmentJson<'a> {
     /// What `covariance` is about.
     center: Box<RawValue>,
     radius: f64,
+    /// What a freedom must be held to, metres.
+    accuracy: f64,
+    model_errors: Box<RawValue>,
     freedoms: Vec<Box<RawValue>>,
     covariance: Vec<Box<RawValue>>,
     support: SupportJson,
@@ -221,6 +226,19 @@ pub(super) fn freedom_json(freedom: &Freedom) -> Result<Box<RawValue>, serde_jso
     to_raw_value(&FreedomJson { name, direction, sigma, unit, determined: *determined, given: *given })
 }
 
+fn model_errors_json(errors: &ModelErrors) -> Result<Box<RawValue>, serde_json::Error> {
+    #[derive(Serialize)]
+    struct ModelErrorsJson {
+        walls_inset: [f64; 2],
+        tops_lower: [f64; 2],
+        buildings: f64,
+        fronts: f64,
+        bending: f64,
+    }
+    let ModelErrors { walls_inset, tops_lower, buildings, fronts, bending } = *errors;
+    to_raw_value(&ModelErrorsJson { walls_inset, tops_lower, buildings, fronts, bending })
+}
+
 fn evidence_json(evidence: &PlaneEvidence) -> Result<Box<RawValue>, serde_json::Error> {
     #[derive(Serialize)]
     struct EvidenceJson<'a> {
@@ -237,13 +255,16 @@ fn evidence_json(evidence: &PlaneEvidence) -> Result<Box<RawValue>, serde_json::
 fn check_finite(alignment: &Alignment) -> Result<(), ReportError> {
     let similarity =
         |s: &Similarity| s.scale.is_finite() && s.rotation.matrix().iter().chain(&s.translation).all(|v| v.is_finite());
-    let support = &alignment.support;
+    let (support, errors) = (&alignment.support, &alignment.model_errors);
+    let spreads = [errors.buildings, errors.fronts, errors.bending];
     let checks = [
         ("transform", alignment.best.iter().all(similarity)),
         ("alternatives", alignment.alternatives.iter().all(|a| a.weight.is_finite() && similarity(&a.city_from_sfm))),
         ("origin", alignment.origin.iter().all(|v| v.is_finite())),
         ("center", alignment.center.iter().all(|v| v.is_finite())),
         ("radius", alignment.radius.is_finite()),
+        ("accuracy", alignment.accuracy_m.is_finite()),
+        ("model_errors", errors.walls_inset.iter().chain(&errors.tops_lower).chain(&spreads).all(|v| v.is_finite())),
         (
             "freedoms",
             alignment.freedoms.iter().all(|f| f.sigma.is_finite() && f.direction.iter().all(|v| v.is_finite())),
@@ -280,6 +301,8 @@ mod tests {
             origin: Vector3::new(90000.0, 435_000.0, 0.0),
             center: Point3::new(1.0, 2.0, 3.0),
             radius: 12.5,
+            accuracy_m: 0.35,
+            model_errors: ModelErrors { walls_inset: [0.31, 0.04], buildings: 0.08, ..ModelErrors::default() },
             freedoms: vec![Freedom {
                 name: "up".into(),
                 direction: Vector3::z(),

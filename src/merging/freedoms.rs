@@ -12,9 +12,18 @@ use crate::verdict::{Freedom, Hold};
 
 /// In the city's frame: metres and directions by their names.
 pub(super) fn in_the_city(held: &Held) -> Vec<Freedom> {
-    let (by_plane, prior) = (vec![held.information], Matrix7::zeros());
-    let hold = Hold { chart: held.chart, by_plane, prior, given_scale: None };
-    crate::verdict::freedoms(&hold, &Limits::default().verdict)
+    let limits = Limits::default().verdict;
+    let hold = Hold {
+        chart: held.chart,
+        information: held.information,
+        // Ties have been confirmed by those who made them.
+        without: Vec::new(),
+        prior: Matrix7::zeros(),
+        given_scale: None,
+        accuracy_m: limits.accuracy_m(held.chart.radius),
+        confirmed_times: 1.0,
+    };
+    crate::verdict::freedoms(&hold, &limits)
 }
 
 /// In the frame of a part, which knows neither metres nor up; the loosest first. Sigmas hold what parts bend by, which no ties tell;

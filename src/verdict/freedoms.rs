@@ -1,9 +1,10 @@
 //! Which of the seven freedoms the data fix, and how firmly.
 //!
-//! Input        the information that each plane of the city contributes at the pose (one plane is one vote of limited weight), and
-//!              that of the start
-//! Method       eigenvectors of the summed information are the freedoms; a freedom is determined when the data alone hold it to within
-//!              a limit. Its sigma includes the start, so that it is finite
+//! Input        the information that the data hold on the pose with all that errs together in model and reconstruction, the same without each
+//!              of its witnesses, and that of the start
+//! Method       eigenvectors of the information are the freedoms; a freedom is determined when the data alone hold it to within the accuracy
+//!              that is asked for, and, no matter which witness is left out, to within a multiple of it. Its sigma includes the
+//!              start, so that it is finite
 //! Source       mathematics of the normalised Jacobian: Gelfand et al. (3DIM 2003) for the slippable motions of a surface
 
 use super::{Freedom, words};
@@ -15,12 +16,18 @@ use crate::robust::{Chart, Matrix7, Motion, Vector7};
 #[derive(Clone, Debug)]
 pub struct Hold {
     pub chart: Chart,
-    /// Information of each plane with points on it, 1 / m^2 in the chart's unknowns.
-    pub by_plane: Vec<Matrix7>,
+    /// Information of the data, 1 / m^2 in the chart's unknowns.
+    pub information: Matrix7,
+    /// The same without each witness in turn.
+    pub without: Vec<Matrix7>,
     /// Information of what is known beforehand.
     pub prior: Matrix7,
     /// The scale, where it was given; then the chart's motion is rigid.
     pub given_scale: Option<GivenScale>,
+    /// What a freedom must be held to, metres at the chart's radius.
+    pub accuracy_m: f64,
+    /// ... and how many times that without any one witness.
+    pub confirmed_times: f64,
 }
 
 /// A scale that was given, beside that of the data.
@@ -61,15 +68,19 @@ impl GivenScale {
 
 impl Hold {
     /// The freedoms that are not given, the loosest first.
-    pub fn directions(&self, limits: &VerdictLimits) -> Vec<HeldDirection> {
-        let spectrum = self.chart.spectrum(&self.by_plane.iter().sum());
+    pub fn directions(&self) -> Vec<HeldDirection> {
+        let spectrum = self.chart.spectrum(&self.information);
         let direction = |d: &crate::robust::Direction| {
             let along = |m: &Matrix7| d.unit.dot(&(m * d.unit)).max(0.0);
-            let of_data: f64 = self.by_plane.iter().map(along).sum();
+            let of_data = along(&self.information);
+            let is_confirmed = || {
+                let least = (self.confirmed_times * self.accuracy_m).powi(-2);
+                self.without.iter().all(|m| along(m) >= least)
+            };
             HeldDirection {
                 unit: d.unit,
                 sigma_m: (of_data + along(&self.prior)).sqrt().recip(),
-                determined: of_data * limits.determined_m * limits.determined_m >= 1.0,
+                determined: of_data * self.accuracy_m * self.accuracy_m >= 1.0 && is_confirmed(),
             }
         };
         spectrum.directions().iter().map(direction).collect()
@@ -78,7 +89,7 @@ impl Hold {
     /// Covariance over (rotation vector about the centre, rad; translation of the centre, m; log scale).
     /// A scale that is given has none.
     pub fn covariance(&self) -> [[f64; 7]; 7] {
-        let information: Matrix7 = self.by_plane.iter().sum::<Matrix7>() + self.prior;
+        let information = self.information + self.prior;
         let covariance = match self.chart.motion {
             Motion::Similarity => information.try_inverse().unwrap_or_else(Matrix7::zeros),
             Motion::Rigid => {
@@ -118,7 +129,7 @@ pub fn freedoms(hold: &Hold, limits: &VerdictLimits) -> Vec<Freedom> {
         determined: !scale.is_contradicted(r, limits),
         given: true,
     });
-    hold.directions(limits).into_iter().map(in_words).chain(given).collect()
+    hold.directions().into_iter().map(in_words).chain(given).collect()
 }
 
 /// The unit vector along `v` that points up, or east where level.

@@ -84,7 +84,7 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
             certainty: Certainty { false_alarm: limits.false_alarm, ..Certainty::default() },
         };
     };
-    let directions = hold.directions(limits);
+    let directions = hold.directions();
     let others: Vec<&Rival> = rivals[1..].iter().filter(|r| differs(best, r, hold, &directions, limits)).collect();
     let alternatives = alternatives(best, &others, hold);
     let certainty = certainty(evidence, &others, limits);
@@ -273,9 +273,12 @@ mod tests {
         }
         Hold {
             chart: Chart::of_similarity(Point3::origin(), 20.0),
-            by_plane: vec![information, information],
+            information: information * 2.0,
+            without: vec![information, information],
             prior: Matrix7::identity() * 0.01,
             given_scale: None,
+            accuracy_m: 0.35,
+            confirmed_times: 3.0,
         }
     }
 

@@ -54,6 +54,10 @@ pub struct Alignment {
     pub center: Point3<f64>,
     /// Radius of the scene, metres: where a sigma of a turn or of the scale is felt as that of a length.
     pub radius: f64,
+    /// What a freedom must be held to in order to be determined, metres at the radius.
+    pub accuracy_m: f64,
+    /// What the data say of the model and of the reconstruction beside the pose.
+    pub model_errors: ModelErrors,
     pub freedoms: Vec<Freedom>,
     /// Rows and columns: rotation vector about `center` (rad), translation of `center` (m), log scale; city frame.
     pub covariance: [[f64; 7]; 7],
@@ -82,6 +86,21 @@ pub struct Certainty {
     /// Poses that were fitted to other places, and the largest evidence of one of them.
     pub by_chance: usize,
     pub most_bits_by_chance: f64,
+}
+
+/// Errors of the model and of the reconstruction, as the data show them; metres, one sigma where not said otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ModelErrors {
+    /// How far walls stand inside the model's, all alike, and one sigma of that.
+    pub walls_inset: [f64; 2],
+    /// How much lower level tops of buildings are than the model's, all alike, and one sigma of that.
+    pub tops_lower: [f64; 2],
+    /// Shift of a single building.
+    pub buildings: f64,
+    /// Offset of a single front of a building.
+    pub fronts: f64,
+    /// Bending of the reconstruction, root mean square.
+    pub bending: f64,
 }
 
 /// Another pose that explains the data.

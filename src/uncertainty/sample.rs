@@ -1,0 +1,221 @@
+//! The points on the city as pieces of surface: pieces of fronts, fronts of buildings.
+//!
+//! Question     what errs together?
+//! Method       a *building* is an object of the model, or where an object is larger than any building (terrain, a model that is one mesh)
+//!              a square of it. Its planes that lie in one plane in space are one *front*. A *piece* of a front is what lies in one cell of
+//!              a grid as wide as windows repeat: its points are one observation, so that neither their number nor the noise that
+//!              neighbours share can make a front more certain than it is
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use crate::city::ObjectId;
+use crate::correspondence::{ProbeOnPlane, Refiner};
+use crate::geometry::{Point3, Similarity, Vector3};
+use crate::limits::UncertaintyLimits;
+use crate::planes::CityPlanes;
+
+/// One observation: how far the city's surface and the cloud's are apart at a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    /// On the city's surface.
+    pub foot: Point3<f64>,
+    /// Of the city's surface, outward.
+    pub normal: Vector3<f64>,
+    /// Distance of the cloud from the surface, metres.
+    pub across_m: f64,
+    /// Weight of its points together.
+    pub points: f64,
+}
+
+/// Planes of one building in one plane in space.
+#[derive(Clone, Debug)]
+pub(super) struct Front {
+    pub pieces: Range<usize>,
+    pub middle: Point3<f64>,
+    /// In the front, and how far it reaches along them, metres.
+    pub axes: [Vector3<f64>; 2],
+    pub reach_m: [f64; 2],
+    pub is_wall: bool,
+    /// A level top of something with walls.
+    pub is_lid: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Building {
+    pub fronts: Range<usize>,
+    pub middle: Point3<f64>,
+    /// Where a turn is felt as a shift of the same size, metres.
+    pub lever_m: f64,
+}
+
+/// What is observed, sorted by buildings and fronts.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sample {
+    pub pieces: Vec<Piece>,
+    pub fronts: Vec<Front>,
+    pub buildings: Vec<Building>,
+    /// Noise of one point across its surface, metres.
+    pub point_sigma_m: f64,
+    /// All roofs on which points lie are level: a model of boxes.
+    pub has_lids_only: bool,
+}
+
+/// A row with what it belongs to.
+struct Placed<'a> {
+    building: (ObjectId, [i32; 2]),
+    row: &'a ProbeOnPlane,
+}
+
+/// Extent of an object, and whether it has walls.
+struct Body {
+    low: Point3<f64>,
+    high: Point3<f64>,
+    has_walls: bool,
+}
+
+/// What lies on the city within `gate_m` (metres of the start) at `pose`.
+pub(super) fn sample(refiner: &Refiner, pose: &Similarity, gate_m: f64) -> Sample {
+    let scene = refiner.scene;
+    let limits = &scene.limits.uncertainty;
+    let all: Vec<u32> = (0..scene.votes.probes.len() as u32).collect();
+    let rows = refiner.probes_on_planes(&all, pose, gate_m);
+    let planes = scene.city.planes();
+    let bodies = bodies(planes, scene.limits.upright_sin);
+    let mut placed: Vec<Placed> =
+        rows.iter().map(|row| Placed { building: building_of(row, planes, &bodies, limits), row }).collect();
+    // Rows come sorted by plane, and stay so within a building.
+    placed.sort_by_key(|p| p.building);
+    let point_sigma_m = (scene.votes.noise_m * pose.scale).max(scene.limits.least_point_sigma_m);
+    let mut sample = Sample { point_sigma_m, ..Sample::default() };
+    for of_building in placed.chunk_by(|a, b| a.building == b.building) {
+        let body = bodies.get(&of_building[0].building.0);
+        let has_walls = body.is_some_and(|body| body.has_walls);
+        sample.take_building(of_building, has_walls, scene.limits.upright_sin, limits);
+    }
+    let roofs = || sample.fronts.iter().filter(|front| !front.is_wall);
+    sample.has_lids_only = sample.fronts.iter().any(|front| front.is_lid)
+        && roofs().all(|front| {
+            front.is_lid
+                || sample.pieces[front.pieces.clone()].iter().all(|p| p.normal.z > 1.0 - scene.limits.upright_sin)
+        });
+    sample
+}
+
+fn bodies(planes: &CityPlanes, upright_sin: f64) -> HashMap<ObjectId, Body> {
+    let mut bodies: HashMap<ObjectId, Body> = HashMap::new();
+    for plane in &planes.planes {
+        let body = bodies.entry(plane.object).or_insert(Body { low: plane.low, high: plane.high, has_walls: false });
+        body.low = body.low.inf(&plane.low);
+        body.high = body.high.sup(&plane.high);
+        body.has_walls |= plane.plane.normal.z.abs() < upright_sin;
+    }
+    bodies
+}
+
+fn building_of(
+    row: &ProbeOnPlane,
+    planes: &CityPlanes,
+    bodies: &HashMap<ObjectId, Body>,
+    limits: &UncertaintyLimits,
+) -> (ObjectId, [i32; 2]) {
+    let object = planes.planes[row.hit.plane.0 as usize].object;
+    let is_one = bodies.get(&object).is_none_or(|body| (body.high - body.low).xy().max() <= limits.largest_building_m);
+    let square = |x: f64| (x / limits.square_m).floor() as i32;
+    (object, if is_one { [0, 0] } else { [square(row.place.x), square(row.place.y)] })
+}
+
+impl Sample {
+    fn take_building(&mut self, rows: &[Placed], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
+        let first = self.fronts.len();
+        for front in fronts(rows, limits) {
+            self.take_front(&front, has_walls, upright_sin, limits);
+        }
+        let middle = centroid(rows.iter().map(|p| p.row));
+        let spread = rows.iter().map(|p| (p.row.place - middle).xy().norm_squared()).sum::<f64>() / rows.len() as f64;
+        let lever_m = spread.sqrt().max(limits.least_lever_m);
+        self.buildings.push(Building { fronts: first..self.fronts.len(), middle, lever_m });
+    }
+
+    fn take_front(&mut self, rows: &[&ProbeOnPlane], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
+        let first = self.pieces.len();
+        let cell = |row: &ProbeOnPlane| row.place.coords.map(|x| (x / limits.piece_m).floor() as i64);
+        let mut sorted: Vec<([i64; 3], &ProbeOnPlane)> = rows.iter().map(|row| (cell(row).into(), *row)).collect();
+        sorted.sort_by_key(|(cell, _)| *cell);
+        let (sigma_m, tails) = (self.point_sigma_m, limits.tails);
+        self.pieces.extend(sorted.chunk_by(|a, b| a.0 == b.0).map(|points| piece(points, sigma_m, tails)));
+        let pieces = &self.pieces[first..];
+        let total: f64 = pieces.iter().map(|p| p.points).sum();
+        let mean =
+            |of: &dyn Fn(&Piece) -> Vector3<f64>| pieces.iter().map(|p| of(p) * p.points).sum::<Vector3<f64>>() / total;
+        let middle = Point3::from(mean(&|p| p.foot.coords));
+        let normal = mean(&|p| p.normal).try_normalize(0.0).unwrap_or(pieces[0].normal);
+        let along = normal.cross(&Vector3::z()).try_normalize(upright_sin).unwrap_or(Vector3::x());
+        let axes = [along, normal.cross(&along)];
+        let reach_m = axes.map(|axis| {
+            let reach_m = pieces.iter().map(|p| axis.dot(&(p.foot - middle)).abs()).fold(0.0, f64::max);
+            reach_m.max(limits.piece_m)
+        });
+        let is_wall = normal.z.abs() < upright_sin;
+        let is_lid = has_walls && normal.z > 1.0 - upright_sin;
+        self.fronts.push(Front { pieces: first..self.pieces.len(), middle, axes, reach_m, is_wall, is_lid });
+    }
+}
+
+/// Rows of one building by front: planes that lie in one plane in space, the largest first.
+fn fronts<'a>(rows: &[Placed<'a>], limits: &UncertaintyLimits) -> Vec<Vec<&'a ProbeOnPlane>> {
+    let mut planes: Vec<Vec<&ProbeOnPlane>> = rows
+        .chunk_by(|a, b| a.row.hit.plane == b.row.hit.plane)
+        .map(|plane| plane.iter().map(|p| p.row).collect())
+        .collect();
+    planes.sort_by(|a, b| b.len().cmp(&a.len()).then(a[0].hit.plane.cmp(&b[0].hit.plane)));
+    let least_cos = limits.same_front_deg.to_radians().cos();
+    let mut found: Vec<(Vector3<f64>, Point3<f64>, Vec<&ProbeOnPlane>)> = Vec::new();
+    for plane in planes {
+        let (normal, middle) = (plane[0].hit.normal, centroid(plane.iter().copied()));
+        let same = found
+            .iter_mut()
+            .find(|(n, m, _)| n.dot(&normal) > least_cos && n.dot(&(middle - *m)).abs() < limits.same_front_m);
+        match same {
+            Some((_, _, front)) => front.extend(plane),
+            None => found.push((normal, middle, plane)),
+        }
+    }
+    found.into_iter().map(|(_, _, front)| front).collect()
+}
+
+fn centroid<'a>(rows: impl Iterator<Item = &'a ProbeOnPlane>) -> Point3<f64> {
+    let (sum, count) = rows.fold((Vector3::zeros(), 0.0), |(sum, count), row| (sum + row.place.coords, count + 1.0));
+    Point3::from(sum / f64::max(count, 1.0))
+}
+
+/// Rounds in which the points of a piece agree on its distance.
+const ROUNDS: usize = 3;
+
+/// The points of one cell as one observation, about their median and with heavy tails of so many degrees of freedom. Noise stands across
+/// the surface, so the foot is where a row is taken: else a smaller scale would seem to make the noise smaller.
+fn piece(points: &[([i64; 3], &ProbeOnPlane)], sigma_m: f64, tails: f64) -> Piece {
+    let mut across: Vec<f64> = points.iter().map(|(_, row)| row.hit.across_m).collect();
+    across.sort_by(f64::total_cmp);
+    let mut across_m = across[across.len() / 2];
+    let mut weights: Vec<f64> = Vec::new();
+    for _ in 0..ROUNDS {
+        let weight = |row: &ProbeOnPlane| {
+            let off = (row.hit.across_m - across_m) / sigma_m;
+            row.weight * (tails + 1.0) / (tails + off * off)
+        };
+        weights = points.iter().map(|(_, row)| weight(row)).collect();
+        let sum: f64 = points.iter().zip(&weights).map(|((_, row), weight)| row.hit.across_m * weight).sum();
+        across_m = sum / weights.iter().sum::<f64>();
+    }
+    let total: f64 = weights.iter().sum();
+    let mean = |of: &dyn Fn(&ProbeOnPlane) -> Vector3<f64>| {
+        points.iter().zip(&weights).map(|((_, row), weight)| of(row) * *weight).sum::<Vector3<f64>>() / total
+    };
+    Piece {
+        foot: Point3::from(mean(&|row| row.place.coords - row.hit.normal * row.hit.across_m)),
+        normal: mean(&|row| row.hit.normal).try_normalize(0.0).unwrap_or(points[0].1.hit.normal),
+        across_m,
+        points: total,
+    }
+}

@@ -42,7 +42,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("lib", &["align"]),
     // For tests, examples and benchmarks: no room may import it.
-    ("synthetic", &["geometry", "city", "reconstruction", "imagery", "solvers"]),
+    ("synthetic", &["geometry", "city", "reconstruction", "imagery", "solvers", "verdict"]),
 ];
 
 fn source(path: &str) -> PathBuf {

@@ -141,7 +141,7 @@ impl Block {
 }
 
 /// One house of a town: 8 to 12 m wide, 9 to 16 m deep, 5 to 16 m high, turned by up to 8 degrees.
-fn town_house(chance: &mut Chance, [x, y]: [f64; 2]) -> House {
+pub(super) fn town_house(chance: &mut Chance, [x, y]: [f64; 2]) -> House {
     let mut between = |low: f64, high: f64| low + (high - low) * chance.uniform();
     let size = [between(8.0, 12.0), between(9.0, 16.0), between(5.0, 16.0)];
     let house = if between(0.0, 1.0) < 0.5 { House::flat(size) } else { House::gabled(size, between(2.0, 5.0)) };

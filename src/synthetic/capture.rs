@@ -188,7 +188,7 @@ impl Block {
     }
 }
 
-fn image(station: &Station, id: u32) -> Image {
+pub(super) fn image(station: &Station, id: u32) -> Image {
     let rotation = station.cam_from_city_rotation();
     Image {
         id,
@@ -215,7 +215,7 @@ fn sightings(images: &[Image], camera: &Camera, rays: &RayCaster, place: &Place)
     images.iter().enumerate().filter_map(|(i, image)| Some((i, shows(image)?))).collect()
 }
 
-fn add_point(sfm: &mut Reconstruction, at: Point3<f64>, pixels: &[(usize, [f64; 2])]) {
+pub(super) fn add_point(sfm: &mut Reconstruction, at: Point3<f64>, pixels: &[(usize, [f64; 2])]) {
     let point = PointIndex(sfm.points.len() as u32);
     let mut error_px = 0.0;
     for &(i, [x_px, y_px]) in pixels {

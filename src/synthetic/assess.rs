@@ -1,0 +1,314 @@
+//! Assessments: an alignment beside the truth, in metres and in its own sigmas.
+//!
+//! Question     is a verdict right, and is the error within what was stated?
+//! Input        an alignment, the truth (none in a foreign town), the points that are not wrong
+//! Method       errors of points, root mean square over the cloud; the error of the pose about the alignment's own centre, along the
+//!              principal axes of its covariance, of which as many as there are determined freedoms are *held*
+//! Assumptions  of an undetermined pose only what is held is claimed: an error along the rest is no error
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::geometry::{Point3, Similarity, Vector3};
+use crate::verdict::{Alignment, Verdict};
+
+type Vector7 = SVector<f64, 7>;
+type Matrix7 = SMatrix<f64, 7, 7>;
+
+/// An error is wrong beyond so much, and beyond three times what was stated; gross beyond 2 m as well.
+const WRONG_M: f64 = 0.5;
+const WRONG_SIGMAS: f64 = 3.0;
+const GROSS_M: f64 = 2.0;
+
+/// A given scale that is nearer than this to the true one is not wrong (natural logarithm).
+const RIGHT_LOG_SCALE: f64 = 0.02;
+
+/// Chi-square for 1 to 7 freedoms: what 2.5 % and 97.5 % of right statements stay below (any table of the distribution).
+const BAND: [[f64; 2]; 7] = [
+    [0.000_982, 5.024],
+    [0.0506, 7.378],
+    [0.216, 9.348],
+    [0.484, 11.143],
+    [0.831, 12.833],
+    [1.237, 14.449],
+    [1.690, 16.013],
+];
+/// ... and half of them.
+const MEDIAN: [f64; 7] = [0.455, 1.386, 2.366, 3.357, 4.351, 5.348, 6.346];
+
+/// What a verdict turned out to be worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    AlignedRight,
+    AlignedWrong,
+    AlignedGross,
+    UndeterminedRight,
+    /// Wrong in what it says is held.
+    UndeterminedWrong,
+    /// The right pose is the best one, or among the alternatives.
+    AmbiguousRight,
+    AmbiguousWrong,
+    /// The best candidate was right and was refused.
+    FailedRight,
+    FailedWrong,
+}
+
+/// An alignment beside the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assessment {
+    pub verdict: Verdict,
+    /// Root mean square over the points; infinite without a pose or without a truth.
+    pub error_m: f64,
+    /// What the covariance says of the same.
+    pub stated_m: f64,
+    /// Both along what is held.
+    pub held_error_m: f64,
+    pub held_stated_m: f64,
+    /// Squared error along what is held, in sigmas.
+    pub chi_square: f64,
+    /// How many freedoms are held.
+    pub held: usize,
+    /// The smallest error among the alternatives.
+    pub alternative_m: f64,
+    /// The verdict speaks against a scale that was given, and that scale is wrong.
+    pub names_scale: bool,
+}
+
+impl Assessment {
+    pub fn new(alignment: &Alignment, truth: Option<&Similarity>, points: &[Point3<f64>]) -> Assessment {
+        let nothing = Assessment {
+            verdict: alignment.verdict,
+            error_m: f64::INFINITY,
+            stated_m: 0.0,
+            held_error_m: f64::INFINITY,
+            held_stated_m: 0.0,
+            chi_square: f64::INFINITY,
+            held: 0,
+            alternative_m: f64::INFINITY,
+            names_scale: false,
+        };
+        let Some(best) = alignment.best else { return nothing };
+        let places: Vec<Vector3<f64>> = points.iter().map(|x| best.apply(x) - alignment.center).collect();
+        let axes = Axes::new(alignment);
+        let all = |weights: &dyn Fn(usize) -> f64| rms_of(&axes.motion(weights), &places, axes.radius);
+        let stated = |from: usize| {
+            let of_axis = |k: usize| all(&|other| if other == k { axes.sigmas[k] } else { 0.0 }).powi(2);
+            (from..axes.count).map(of_axis).sum::<f64>().sqrt()
+        };
+        let first_held = axes.count - axes.held;
+        let stated = Assessment { stated_m: stated(0), held_stated_m: stated(first_held), held: axes.held, ..nothing };
+        let Some(truth) = truth else { return stated };
+        let error = error_of(&best, truth, &alignment.center, axes.radius);
+        let along: Vec<f64> = (0..axes.count).map(|k| axes.unit[k].dot(&error)).collect();
+        let alternatives = alignment.alternatives.iter().map(|a| rms_between(&a.city_from_sfm, truth, points));
+        Assessment {
+            error_m: rms_between(&best, truth, points),
+            held_error_m: all(&|k| if k < first_held { 0.0 } else { along[k] }),
+            chi_square: (first_held..axes.count).map(|k| (along[k] / axes.sigmas[k].max(1e-9)).powi(2)).sum(),
+            alternative_m: alternatives.fold(f64::INFINITY, f64::min),
+            names_scale: alignment.freedoms.iter().any(|f| f.given && !f.determined)
+                && (truth.scale / best.scale).ln().abs() > RIGHT_LOG_SCALE,
+            ..stated
+        }
+    }
+
+    pub fn outcome(&self) -> Outcome {
+        let most = WRONG_M.max(WRONG_SIGMAS * self.stated_m);
+        let is_right = self.held_error_m <= WRONG_M.max(WRONG_SIGMAS * self.held_stated_m);
+        match self.verdict {
+            Verdict::Aligned if self.error_m <= most => Outcome::AlignedRight,
+            Verdict::Aligned if self.error_m <= most.max(GROSS_M) => Outcome::AlignedWrong,
+            Verdict::Aligned => Outcome::AlignedGross,
+            // A pose that is held to a wrong scale is off with it; the verdict says why.
+            Verdict::Undetermined if is_right || self.names_scale => Outcome::UndeterminedRight,
+            Verdict::Undetermined => Outcome::UndeterminedWrong,
+            Verdict::Ambiguous if is_right || self.alternative_m <= WRONG_M => Outcome::AmbiguousRight,
+            Verdict::Ambiguous => Outcome::AmbiguousWrong,
+            Verdict::Failed if is_right => Outcome::FailedRight,
+            Verdict::Failed => Outcome::FailedWrong,
+        }
+    }
+
+    /// Whether the error tells something of the sigmas: the place is right, something is held, and the pose is not refused.
+    pub fn tells_sigmas(&self) -> bool {
+        matches!(self.verdict, Verdict::Aligned | Verdict::Undetermined) && self.held > 0 && self.held_error_m < GROSS_M
+    }
+
+    /// Below, within or above the band in which 95 % of right statements lie.
+    pub fn band(&self) -> std::cmp::Ordering {
+        let [low, high] = BAND[self.held.clamp(1, 7) - 1];
+        match self.chi_square {
+            x if x < low => std::cmp::Ordering::Less,
+            x if x > high => std::cmp::Ordering::Greater,
+            _ => std::cmp::Ordering::Equal,
+        }
+    }
+
+    /// Chi-square over its median: the square of what the sigmas lack, in the median of many.
+    pub fn normalised(&self) -> f64 {
+        self.chi_square / MEDIAN[self.held.clamp(1, 7) - 1]
+    }
+}
+
+/// The principal axes of a covariance, all unknowns as lengths at the radius; loosest first.
+struct Axes {
+    unit: Vec<Vector7>,
+    sigmas: Vec<f64>,
+    /// How many there are (six where the scale is given), and how many of them are held: the last ones.
+    count: usize,
+    held: usize,
+    radius: f64,
+}
+
+impl Axes {
+    fn new(alignment: &Alignment) -> Axes {
+        let radius = alignment.radius.max(f64::MIN_POSITIVE);
+        let lengths = [radius, radius, radius, 1.0, 1.0, 1.0, radius];
+        let covariance = Matrix7::from_fn(|i, j| alignment.covariance[i][j] * lengths[i] * lengths[j]);
+        let eigen = covariance.symmetric_eigen();
+        let mut order: Vec<usize> = (0..7).collect();
+        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+        let is_given = alignment.freedoms.iter().any(|freedom| freedom.given);
+        let count = if is_given { 6 } else { 7 };
+        let determined = alignment.freedoms.iter().filter(|f| f.determined && !f.given).count();
+        Axes {
+            unit: order.iter().map(|k| eigen.eigenvectors.column(*k).into_owned()).collect(),
+            sigmas: order.iter().map(|k| eigen.eigenvalues[*k].max(0.0).sqrt()).collect(),
+            count,
+            held: determined.min(count),
+            radius,
+        }
+    }
+
+    /// A motion by so much along each axis.
+    fn motion(&self, along: &dyn Fn(usize) -> f64) -> Vector7 {
+        (0..self.count).map(|k| along(k) * self.unit[k]).sum()
+    }
+}
+
+/// Root mean square of what a small motion does to places about its centre.
+fn rms_of(motion: &Vector7, places: &[Vector3<f64>], radius: f64) -> f64 {
+    let turn = Vector3::new(motion[0], motion[1], motion[2]) / radius;
+    let shift = Vector3::new(motion[3], motion[4], motion[5]);
+    let of_place = |d: &Vector3<f64>| (turn.cross(d) + shift + motion[6] / radius * d).norm_squared();
+    (places.iter().map(of_place).sum::<f64>() / places.len().max(1) as f64).sqrt()
+}
+
+/// The truth relative to what was found: rotation vector about the centre, shift of it, logarithm of the scale, as lengths.
+fn error_of(found: &Similarity, truth: &Similarity, center: &Point3<f64>, radius: f64) -> Vector7 {
+    let turn = radius * (truth.rotation * found.rotation.inverse()).scaled_axis();
+    let shift = truth.apply(&found.inverse().apply(center)) - center;
+    let scale = radius * (truth.scale / found.scale).ln();
+    Vector7::from_column_slice(&[turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, scale])
+}
+
+fn rms_between(a: &Similarity, b: &Similarity, points: &[Point3<f64>]) -> f64 {
+    let sum: f64 = points.iter().map(|x| (a.apply(x) - b.apply(x)).norm_squared()).sum();
+    (sum / points.len().max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solvers::scene::Chance;
+    use crate::synthetic::sfm_from_city;
+    use crate::verdict::{Freedom, SearchSummary, Support};
+    use nalgebra::Rotation3;
+
+    const RADIUS: f64 = 20.0;
+
+    /// An alignment at the truth moved by so much, stating these sigmas (lengths at the radius, axes of the chart).
+    fn alignment(motion: &Vector7, sigmas: &[f64; 7], determined: usize) -> (Alignment, Similarity, Vec<Point3<f64>>) {
+        let truth = sfm_from_city().inverse();
+        let center = Point3::new(10.0, -5.0, 4.0);
+        let turn = Rotation3::new(Vector3::new(motion[0], motion[1], motion[2]) / RADIUS);
+        let shift = Vector3::new(motion[3], motion[4], motion[5]);
+        let off = Similarity::about(&center, &(center + shift), (motion[6] / RADIUS).exp(), turn);
+        let lengths = [RADIUS, RADIUS, RADIUS, 1.0, 1.0, 1.0, RADIUS];
+        let mut covariance = [[0.0; 7]; 7];
+        for k in 0..7 {
+            covariance[k][k] = (sigmas[k] / lengths[k]).powi(2);
+        }
+        let freedom = |k: usize| Freedom {
+            name: String::new(),
+            direction: Vector3::zeros(),
+            sigma: sigmas[k],
+            unit: "m",
+            determined: k < determined,
+            given: false,
+        };
+        let mut chance = Chance::new(3);
+        let points = (0..200)
+            .map(|_| {
+                truth.inverse().apply(&(center + 0.3 * chance.in_cube().component_mul(&Vector3::new(1.0, 1.0, 0.2))))
+            })
+            .collect();
+        let alignment = Alignment {
+            verdict: Verdict::Aligned,
+            reason: String::new(),
+            best: Some(off * truth),
+            alternatives: Vec::new(),
+            origin: Vector3::zeros(),
+            center: off.apply(&center),
+            radius: RADIUS,
+            freedoms: (0..7).map(freedom).collect(),
+            covariance,
+            support: Support::default(),
+            evidence: Vec::new(),
+            search: SearchSummary::default(),
+            warnings: Vec::new(),
+        };
+        (alignment, truth, points)
+    }
+
+    #[test]
+    fn errors_as_stated_lie_in_the_band_and_their_chi_square_has_its_median() {
+        let sigmas = [0.02, 0.03, 0.05, 0.04, 0.06, 0.08, 0.03];
+        let mut chance = Chance::new(8);
+        let mut normalised = Vec::new();
+        let mut inside = 0;
+        for _ in 0..400 {
+            let motion = Vector7::from_fn(|k, _| sigmas[k] * chance.normal());
+            let (found, truth, points) = alignment(&motion, &sigmas, 7);
+            let assessed = Assessment::new(&found, Some(&truth), &points);
+            inside += usize::from(assessed.band().is_eq());
+            normalised.push(assessed.normalised());
+        }
+        normalised.sort_by(f64::total_cmp);
+        assert!((370..=392).contains(&inside), "{inside} of 400");
+        assert!((normalised[200] - 1.0).abs() < 0.1, "{}", normalised[200]);
+    }
+
+    #[test]
+    fn an_error_along_what_is_open_is_none() {
+        let sigmas = [0.02, 0.02, 0.02, 0.02, 0.02, 3.0, 0.02];
+        let motion = Vector7::from_column_slice(&[0.0, 0.0, 0.0, 0.0, 0.01, 2.5, 0.0]);
+        let (mut found, truth, points) = alignment(&motion, &sigmas, 6);
+        found.verdict = Verdict::Undetermined;
+        let assessed = Assessment::new(&found, Some(&truth), &points);
+        assert_eq!((assessed.held, assessed.outcome()), (6, Outcome::UndeterminedRight));
+        assert!((assessed.error_m - 2.5).abs() < 0.01 && (assessed.held_error_m - 0.01).abs() < 1e-3, "{assessed:?}");
+        let motion = Vector7::from_column_slice(&[0.0, 0.0, 0.0, 0.0, 0.9, 0.0, 0.0]);
+        let (mut found, truth, points) = alignment(&motion, &sigmas, 6);
+        found.verdict = Verdict::Undetermined;
+        assert_eq!(Assessment::new(&found, Some(&truth), &points).outcome(), Outcome::UndeterminedWrong);
+    }
+
+    #[test]
+    fn wrong_is_beyond_half_a_metre_and_three_sigmas_and_gross_beyond_two_metres() {
+        let shifted = |by: f64, sigma: f64| {
+            let motion = Vector7::from_column_slice(&[0.0, 0.0, 0.0, by, 0.0, 0.0, 0.0]);
+            let (found, truth, points) = alignment(&motion, &[0.01, 0.01, 0.01, sigma, 0.01, 0.01, 0.01], 7);
+            Assessment::new(&found, Some(&truth), &points).outcome()
+        };
+        assert_eq!(shifted(0.45, 0.01), Outcome::AlignedRight);
+        assert_eq!(shifted(0.6, 0.01), Outcome::AlignedWrong);
+        assert_eq!(shifted(0.6, 0.25), Outcome::AlignedRight);
+        assert_eq!(shifted(5.0, 0.25), Outcome::AlignedGross);
+    }
+
+    #[test]
+    fn without_a_truth_whatever_is_called_aligned_is_gross() {
+        let (found, _, points) = alignment(&Vector7::zeros(), &[0.01; 7], 7);
+        assert_eq!(Assessment::new(&found, None, &points).outcome(), Outcome::AlignedGross);
+    }
+}

@@ -1,0 +1,433 @@
+//! Cases: a capture of some place of a town, the town's model, and starts at the right place and at wrong ones.
+//!
+//! Question     what does the program say where the model differs from the world, and where there is nothing to be found?
+//! Output       [`Case`]: everything that is drawn comes from (seed, index); another level of one fault leaves the rest as it was
+//! Method       a town is planned, built ([`Site`]) and modelled; photographs or a scan of one place are reconstructed
+//!              ([`Imperfect`]); a start is the truth disturbed by its own sigmas, or as much about another place
+
+use std::f64::consts::{PI, TAU};
+
+use super::block::Block;
+use super::draws::{between, one_of, stream, whole};
+use super::house::Face;
+use super::imperfect::{Imperfect, photographed, scanned};
+use super::levels::Levels;
+use super::quarters::{Quarters, Repeated};
+use super::site::Site;
+use super::viewpoints;
+use super::world::{Matter, World};
+use crate::city::{CityError, CityModel};
+use crate::geometry::{Point3, Rotation3, Similarity, Start, StartSigmas, Vector3};
+use crate::solvers::scene::Chance;
+
+/// A town is so many blocks wide and deep: 300 m, so that a wrong place has its own streets.
+const BLOCKS: usize = 5;
+
+/// Clutter stands this near the place, metres; from the air farther.
+const REACH_M: f64 = 75.0;
+const REACH_FROM_AIR_M: f64 = 115.0;
+
+/// Draws of a place until enough is seen of it.
+const TRIES: u64 = 8;
+
+/// A capture of which less lies on houses is drawn again.
+const FEWEST_ON_HOUSES: usize = 80;
+
+/// A start in the wrong place is so far off, metres.
+const WRONG_PLACE_M: [f64; 2] = [60.0, 200.0];
+
+/// One sigma of a start beyond which none is drawn: its reach is three.
+const MOST_SIGMAS: f64 = 2.7;
+
+/// Where a capture is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Setting {
+    Street,
+    Court,
+    /// A block from all sides.
+    Block,
+    /// One house of its own.
+    Single,
+    Drone,
+    /// The rim of the town.
+    Outskirts,
+    /// A scan from the air, without cameras.
+    Airborne,
+    /// A town of equal houses, of which the start's heading says little.
+    Repeated(Repeated),
+    /// One wall, with or without the ground before it.
+    Facade,
+    /// Nothing of any house.
+    NoBuilding,
+}
+
+impl Setting {
+    /// Those at which a right pose is there to be found.
+    pub const TOLD_APART: [Setting; 7] = [
+        Setting::Street,
+        Setting::Court,
+        Setting::Block,
+        Setting::Single,
+        Setting::Drone,
+        Setting::Outskirts,
+        Setting::Airborne,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Setting::Street => "street",
+            Setting::Court => "court",
+            Setting::Block => "block all round",
+            Setting::Single => "single house",
+            Setting::Drone => "drone ring",
+            Setting::Outskirts => "outskirts",
+            Setting::Airborne => "airborne scan",
+            Setting::Repeated(_) => "repeated houses",
+            Setting::Facade => "one facade",
+            Setting::NoBuilding => "no building in view",
+        }
+    }
+
+    /// The setting of a case: seven in ten times one at which there is something to be found, each kind as often.
+    pub fn of(index: u64) -> Setting {
+        match index % 10 {
+            k @ 0..7 => Setting::TOLD_APART[k as usize],
+            7 => Setting::Repeated(Repeated::ALL[(index / 10 % 5) as usize]),
+            8 => Setting::Facade,
+            _ => Setting::NoBuilding,
+        }
+    }
+}
+
+/// What a start is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Errand {
+    /// The truth, off by its sigmas.
+    RightPlace,
+    /// Another place of the same town, 60 to 200 m away.
+    WrongPlace,
+    /// Some place of another town.
+    ForeignTown,
+    /// The right place, with a scale that is held and 5 % off.
+    WrongScale,
+}
+
+impl Errand {
+    pub const ALL: [Errand; 4] = [Errand::RightPlace, Errand::WrongPlace, Errand::ForeignTown, Errand::WrongScale];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Errand::RightPlace => "right place",
+            Errand::WrongPlace => "wrong place, same town",
+            Errand::ForeignTown => "foreign town",
+            Errand::WrongScale => "scale 5 % off",
+        }
+    }
+}
+
+/// A capture and the model of where it was made.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub setting: Setting,
+    pub levels: Levels,
+    /// What the program is given; city frame.
+    pub modelled: Block,
+    /// `survey.city_from_sfm` is the truth; its faces are those of what was built.
+    pub capture: Imperfect,
+    seed: u64,
+}
+
+/// Where and how the program is asked to look.
+#[derive(Clone, Copy, Debug)]
+pub struct Request {
+    pub start: Start,
+    pub fixed_scale: Option<f64>,
+}
+
+impl Case {
+    /// Case `index` of a seed, at a setting and levels of its own. `None` where no place was found of which enough is seen.
+    pub fn drawn(seed: u64, index: u64) -> Option<Case> {
+        let levels = Levels::drawn(&mut stream(seed ^ 0x1e7e15, index));
+        Case::with(seed, index, Setting::of(index), &levels)
+    }
+
+    /// The same with given levels.
+    pub fn with(seed: u64, index: u64, setting: Setting, levels: &Levels) -> Option<Case> {
+        (0..TRIES).find_map(|try_number| {
+            let seed = stream(seed, TRIES * index + try_number).uniform().to_bits();
+            Case::at(setting, levels, seed)
+        })
+    }
+
+    fn at(setting: Setting, levels: &Levels, seed: u64) -> Option<Case> {
+        let mut chance = stream(seed, 1);
+        let town = Quarters::new(BLOCKS, BLOCKS, seed);
+        let plan = match setting {
+            Setting::Repeated(kind) => kind.block(&mut chance),
+            _ => town.block.clone(),
+        };
+        // A lone wall is there, or the case is none.
+        let levels = if setting == Setting::Facade { Levels { changed: 0.0, ..*levels } } else { *levels };
+        let site = Site::new(&plan, &levels, seed);
+        let capture = seen(setting, &town, &site.built, &levels, seed, &mut chance)?;
+        let on_houses = capture.survey.face_of_point.iter().flatten().count();
+        if setting != Setting::NoBuilding && on_houses < FEWEST_ON_HOUSES {
+            return None;
+        }
+        // Plans lie along the axes of the grid; towns do not.
+        let turn = between(&mut chance, 0.0, TAU);
+        let place = [between(&mut chance, 80_000.0, 90_000.0), between(&mut chance, 440_000.0, 450_000.0), 3.0];
+        let city_from_plan = Similarity {
+            scale: 1.0,
+            rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), turn),
+            translation: place.into(),
+        };
+        let mut capture = capture;
+        capture.survey.city_from_sfm = city_from_plan * capture.survey.city_from_sfm;
+        Some(Case { setting, levels, modelled: site.modelled.turned(turn).at(place), capture, seed })
+    }
+
+    /// The model as the program reads it.
+    pub fn city(&self) -> Result<CityModel, CityError> {
+        self.modelled.city()
+    }
+
+    /// The model of another town, for [`Errand::ForeignTown`].
+    pub fn foreign_city(&self) -> Result<CityModel, CityError> {
+        let seed = self.seed ^ 0xf0_e16;
+        Site::new(&Quarters::new(BLOCKS, BLOCKS, seed).block, &self.levels, seed).modelled.city()
+    }
+
+    /// The points that are not wrong, sfm frame.
+    pub fn points(&self) -> Vec<Point3<f64>> {
+        let points = self.capture.survey.sfm.points.iter().zip(&self.capture.is_wrong);
+        points.filter(|(_, wrong)| !**wrong).map(|(x, _)| *x).collect()
+    }
+
+    /// A start for an errand, and the scale that is held.
+    pub fn request(&self, errand: Errand) -> Request {
+        let mut chance = stream(self.seed, 10 + errand as u64);
+        let truth = self.capture.survey.city_from_sfm;
+        let middle = median(self.points().iter().map(|x| truth.apply(x)));
+        let heading_rad = match self.setting {
+            Setting::Repeated(_) => one_of(&mut chance, &[(30f64, 0.34), (90.0, 0.33), (180.0, 0.33)]).to_radians(),
+            _ => StartSigmas::default().heading_rad,
+        };
+        let sigmas = StartSigmas { heading_rad, ..StartSigmas::default() };
+        let place = match errand {
+            Errand::RightPlace | Errand::WrongScale => middle,
+            Errand::WrongPlace => self.elsewhere(&middle, &mut chance),
+            // Towns are planned about the same place, on the ground.
+            Errand::ForeignTown => {
+                let far = super::quarters::STEP_M * (BLOCKS - 1) as f64;
+                let [x, y] = [0, 1].map(|_| between(&mut chance, 0.0, far));
+                Point3::new(x, y, middle.z - self.modelled.bounds().0.z)
+            }
+        };
+        let any_heading = match errand {
+            Errand::RightPlace | Errand::WrongScale => false,
+            Errand::WrongPlace => chance.uniform() < 0.5,
+            Errand::ForeignTown => true,
+        };
+        let turn = if any_heading { between(&mut chance, -PI, PI) } else { 0.0 };
+        let mut start = disturbed(&truth, &middle, &place, turn, &sigmas, &mut chance);
+        let fixed_scale = (errand == Errand::WrongScale).then(|| truth.scale * [0.95, 1.05][whole(&mut chance, 0, 2)]);
+        if let Some(scale) = fixed_scale {
+            start = Similarity::about(&start.inverse().apply(&place), &place, scale, start.rotation);
+        }
+        // Sigmas of a start are positive here, so it is one.
+        let start = Start::with_default_sigmas(start);
+        let start = Start::new(*start.city_from_sfm(), sigmas).unwrap_or(start);
+        Request { start, fixed_scale }
+    }
+
+    /// A place of the same town, 60 to 200 m away.
+    fn elsewhere(&self, middle: &Point3<f64>, chance: &mut Chance) -> Point3<f64> {
+        let (low, high) = self.modelled.bounds();
+        let mut drawn = || {
+            let angle = between(chance, 0.0, TAU);
+            middle + between(chance, WRONG_PLACE_M[0], WRONG_PLACE_M[1]) * Vector3::new(angle.cos(), angle.sin(), 0.0)
+        };
+        let inside = |p: &Point3<f64>| (0..2).all(|k| (low[k]..high[k]).contains(&p[k]));
+        let first = drawn();
+        (0..50).map(|_| drawn()).find(inside).unwrap_or(first)
+    }
+}
+
+/// What is seen at a setting.
+fn seen(
+    setting: Setting,
+    town: &Quarters,
+    built: &Block,
+    levels: &Levels,
+    seed: u64,
+    chance: &mut Chance,
+) -> Option<Imperfect> {
+    let rays = built.rays();
+    let middle = built.middle();
+    let on_ground = Point3::new(middle.x, middle.y, 0.0);
+    let faces: Vec<Face> = built.faces().cloned().collect();
+    let mut only = None;
+    let stations = match setting {
+        Setting::Street | Setting::NoBuilding => viewpoints::street(town, &rays, chance),
+        Setting::Court => viewpoints::court(town, &rays, chance),
+        Setting::Block => viewpoints::round_block(town, &rays, chance),
+        Setting::Single => {
+            let (place, half_m) = viewpoints::detached_house(town, chance);
+            viewpoints::single(place, half_m, &rays, chance)
+        }
+        Setting::Drone => {
+            let astray = 60.0 * Vector3::new(between(chance, -1.0, 1.0), between(chance, -1.0, 1.0), 0.0);
+            viewpoints::drone(on_ground + astray, between(chance, 18.0, 35.0), chance)
+        }
+        Setting::Outskirts => viewpoints::outskirts(town, &rays, chance),
+        Setting::Airborne => Vec::new(),
+        Setting::Repeated(kind) => repeated(kind, built, &rays, chance),
+        Setting::Facade => {
+            let (number, stations) = viewpoints::before_a_wall(&faces, &rays, chance)?;
+            only = Some(number);
+            stations
+        }
+    };
+    if setting == Setting::Airborne {
+        let astray = 80.0 * Vector3::new(between(chance, -1.0, 1.0), between(chance, -1.0, 1.0), 0.0);
+        let (place, radius_m) = (on_ground + astray, between(chance, 30.0, 60.0));
+        let world = World::new(built, &place, radius_m, levels, seed);
+        return scanned(&world, &place, radius_m, levels, seed);
+    }
+    if stations.len() < 6 {
+        return None;
+    }
+    let place = Point3::from(stations.iter().map(|s| s.center.coords).sum::<Vector3<f64>>() / stations.len() as f64);
+    let reach_m = if setting == Setting::Drone { REACH_FROM_AIR_M } else { REACH_M };
+    let world = World::new(built, &place, reach_m, levels, seed);
+    let with_ground = chance.uniform() < 0.5;
+    photographed(&world, &stations, levels, seed, |met, chance| match (setting, met.matter) {
+        (Setting::NoBuilding, matter) => !matter.is_house(),
+        (Setting::Facade, Matter::Wall | Matter::Roof) => met.face == only,
+        (Setting::Facade, Matter::Ground) => with_ground,
+        (Setting::Facade, _) => chance.uniform() < 0.5,
+        _ => true,
+    })
+}
+
+/// Photographs of equal houses: along their fronts, or from all sides, or out of the court.
+fn repeated(
+    kind: Repeated,
+    built: &Block,
+    rays: &crate::geometry::RayCaster,
+    chance: &mut Chance,
+) -> Vec<super::Station> {
+    let (low, high) = built.bounds();
+    let middle = built.middle();
+    let on_ground = Point3::new(middle.x, middle.y, 0.0);
+    let half_m = 0.5 * (high - low).xy().norm();
+    match kind {
+        Repeated::Row | Repeated::StreetOfRows => {
+            let from = Point3::new(low.x + between(chance, 0.0, 10.0), -7.0, 0.0);
+            viewpoints::walk(from, 0.0, rays, chance)
+        }
+        Repeated::Detached | Repeated::SymmetricBlock => viewpoints::single(on_ground, half_m, rays, chance),
+        Repeated::Courtyard => viewpoints::drone(on_ground, half_m, chance),
+    }
+}
+
+/// The truth about `middle`, put to `place`, turned, and off by sigmas within reach.
+fn disturbed(
+    truth: &Similarity,
+    middle: &Point3<f64>,
+    place: &Point3<f64>,
+    turn: f64,
+    sigmas: &StartSigmas,
+    chance: &mut Chance,
+) -> Similarity {
+    let mut drawn = |sigma: f64| sigma * chance.normal().clamp(-MOST_SIGMAS, MOST_SIGMAS);
+    // A sigma of half a turn says that any heading is as likely.
+    let is_open = sigmas.heading_rad > 3.0;
+    let heading = if is_open { drawn(1e3) } else { drawn(sigmas.heading_rad) };
+    // Sigmas of positions are of a distance: each axis has its part (score.py).
+    let level = sigmas.position_m * std::f64::consts::FRAC_1_SQRT_2;
+    let shift = Vector3::new(drawn(level), drawn(level), drawn(sigmas.height_m));
+    let rotation = Rotation3::from_euler_angles(drawn(sigmas.tilt_rad), drawn(sigmas.tilt_rad), turn + heading);
+    let off = Similarity::about(middle, &(place + shift), drawn(sigmas.log_scale).exp(), rotation);
+    off * *truth
+}
+
+fn median(points: impl Iterator<Item = Point3<f64>>) -> Point3<f64> {
+    let points: Vec<Point3<f64>> = points.collect();
+    let of_axis = |axis: usize| {
+        let mut values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    };
+    Point3::new(of_axis(0), of_axis(1), of_axis(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_case_of_every_setting_can_be_made_and_comes_again() {
+        for index in 0..10 {
+            let case = Case::drawn(3, index).unwrap();
+            assert_eq!(case.setting, Setting::of(index));
+            let again = Case::drawn(3, index).unwrap();
+            assert_eq!(case.capture.survey.sfm.points, again.capture.survey.sfm.points, "{:?}", case.setting);
+            assert_eq!(case.modelled, again.modelled);
+        }
+    }
+
+    #[test]
+    fn points_that_are_not_wrong_lie_where_the_truth_puts_them() {
+        for setting in [Setting::Street, Setting::Drone, Setting::Airborne] {
+            let case = Case::with(5, 1, setting, &Levels::none()).unwrap();
+            let city: Vec<Face> = case.modelled.faces().cloned().collect();
+            let survey = &case.capture.survey;
+            let mut off: Vec<f64> = survey
+                .sfm
+                .points
+                .iter()
+                .zip(&survey.face_of_point)
+                .filter_map(|(x, face)| {
+                    let face = &city[(*face)?];
+                    Some(face.normal().dot(&(survey.city_from_sfm.apply(x) - face.corners[0])).abs())
+                })
+                .collect();
+            off.sort_by(f64::total_cmp);
+            assert!(off.len() > 300 && off[off.len() / 2] < 0.08, "{setting:?} {} {}", off.len(), off[off.len() / 2]);
+        }
+    }
+
+    #[test]
+    fn a_wrong_level_of_one_fault_leaves_the_places_of_the_houses() {
+        let with = |levels: &Levels| Case::with(5, 2, Setting::Drone, levels).unwrap();
+        let few = with(&Levels::none());
+        let bent = with(&Levels { bend: 0.005, outliers: 0.4, ..Levels::none() });
+        assert_eq!(few.modelled, bent.modelled);
+        assert!(bent.capture.is_wrong.iter().any(|w| *w) && !few.capture.is_wrong.iter().any(|w| *w));
+    }
+
+    #[test]
+    fn starts_lie_where_they_are_asked_to() {
+        let case = Case::drawn(3, 0).unwrap();
+        let truth = case.capture.survey.city_from_sfm;
+        let middle = median(case.capture.survey.sfm.points.iter().copied());
+        let off = |errand| {
+            let start = *case.request(errand).start.city_from_sfm();
+            (start.apply(&middle) - truth.apply(&middle)).norm()
+        };
+        assert!(off(Errand::RightPlace) < 35.0 && off(Errand::WrongPlace) > 30.0);
+        let scale = case.request(Errand::WrongScale).fixed_scale.unwrap() / truth.scale;
+        assert!(((scale - 1.0).abs() - 0.05).abs() < 1e-9, "{scale}");
+        assert_eq!(Errand::ALL.iter().filter(|e| case.request(**e).fixed_scale.is_some()).count(), 1);
+    }
+
+    #[test]
+    fn a_wall_of_its_own_is_a_wall() {
+        let case = Case::drawn(3, 8).unwrap();
+        let faces: BTreeSet<usize> = case.capture.survey.face_of_point.iter().flatten().copied().collect();
+        assert!(faces.len() <= 2, "a wall, and the ground: {faces:?}");
+    }
+}

@@ -1,0 +1,106 @@
+//! Levels: how far a capture and its model are from ideal, each fault by its own number.
+
+use super::draws::{log_between, one_of};
+use crate::solvers::scene::Chance;
+
+/// How strong each fault is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// Each modelled house is shifted by so much (one sigma, each level axis), and its ends are turned by as much.
+    pub building_m: f64,
+    /// Each modelled plane is off by so much (one sigma), besides.
+    pub plane_m: f64,
+    /// Walls stand so far inside the roof's edge, where the model has them.
+    pub eaves_m: f64,
+    /// The model is of blocks under flat lids.
+    pub lids: bool,
+    /// Share of houses that are gone, of another height or rebuilt; half as many are missing in the model.
+    pub changed: f64,
+    /// Windows, balconies and cladding; 1 is usual.
+    pub relief: f64,
+    /// Trees, cars and fences; 1 is usual.
+    pub clutter: f64,
+    /// Share of points that are wrong.
+    pub outliers: f64,
+    /// One sigma of a keypoint; what it makes of a point grows with the distance, along the line of sight two to six times as fast.
+    pub noise_px: f64,
+    /// Largest bend of the reconstruction that no similarity takes away, in shares of its extent.
+    pub bend: f64,
+    /// Points that are not wrong, at most.
+    pub points: usize,
+    /// Whether the model has the ground.
+    pub ground: bool,
+    /// Whether the reconstruction tells its cameras and tracks.
+    pub cameras: bool,
+}
+
+/// A fault taken alone: its name, and what it changes.
+pub type Fault = (&'static str, fn(&mut Levels));
+
+impl Levels {
+    /// Half a pixel of noise and nothing else.
+    pub fn none() -> Levels {
+        Levels {
+            building_m: 0.0,
+            plane_m: 0.0,
+            eaves_m: 0.0,
+            lids: false,
+            changed: 0.0,
+            relief: 0.0,
+            clutter: 0.0,
+            outliers: 0.0,
+            noise_px: 0.5,
+            bend: 0.0,
+            points: 2500,
+            ground: true,
+            cameras: true,
+        }
+    }
+
+    /// As good as things are: what single faults are added to.
+    pub fn good() -> Levels {
+        Levels { building_m: 0.02, plane_m: 0.01, clutter: 0.3, outliers: 0.05, ..Levels::none() }
+    }
+
+    /// As things are. Shares chosen after the faults that were seen in real pairs of capture and model.
+    pub fn drawn(chance: &mut Chance) -> Levels {
+        Levels {
+            building_m: one_of(chance, &[(0.03, 0.3), (0.1, 0.5), (0.25, 0.2)]),
+            plane_m: one_of(chance, &[(0.01, 0.3), (0.03, 0.5), (0.08, 0.2)]),
+            eaves_m: one_of(chance, &[(0.0, 0.4), (0.25, 0.4), (0.5, 0.2)]),
+            lids: one_of(chance, &[(false, 0.85), (true, 0.15)]),
+            changed: one_of(chance, &[(0.0, 0.25), (0.1, 0.35), (0.25, 0.4)]),
+            relief: one_of(chance, &[(0.3, 0.3), (1.0, 0.5), (1.5, 0.2)]),
+            clutter: one_of(chance, &[(0.3, 0.3), (1.0, 0.5), (2.0, 0.2)]),
+            outliers: one_of(chance, &[(0.05, 0.4), (0.15, 0.4), (0.4, 0.2)]),
+            noise_px: one_of(chance, &[(0.5, 0.4), (1.0, 0.4), (2.0, 0.2)]),
+            bend: one_of(chance, &[(0.0, 0.15), (0.001, 0.35), (0.0025, 0.3), (0.005, 0.2)]),
+            points: log_between(chance, 630.0, 5000.0) as usize,
+            ground: one_of(chance, &[(true, 0.7), (false, 0.3)]),
+            cameras: one_of(chance, &[(true, 0.65), (false, 0.35)]),
+        }
+    }
+
+    /// One fault at a time, to be laid over [`Levels::good`].
+    pub const FAULTS: &[Fault] = &[
+        ("none", |_| ()),
+        ("houses off by 5 cm", |l| l.building_m = 0.05),
+        ("houses off by 10 cm", |l| l.building_m = 0.1),
+        ("houses off by 25 cm", |l| l.building_m = 0.25),
+        ("planes off by 8 cm", |l| l.plane_m = 0.08),
+        ("walls 25 cm under eaves", |l| l.eaves_m = 0.25),
+        ("walls 50 cm under eaves", |l| l.eaves_m = 0.5),
+        ("flat lids (LoD1)", |l| l.lids = true),
+        ("a quarter of houses changed", |l| l.changed = 0.25),
+        ("relief of facades", |l| l.relief = 1.0),
+        ("twice the clutter", |l| l.clutter = 2.0),
+        ("40 % outliers", |l| l.outliers = 0.4),
+        ("noise of 2 pixels", |l| l.noise_px = 2.0),
+        ("bent by 0.1 %", |l| l.bend = 0.001),
+        ("bent by 0.25 %", |l| l.bend = 0.0025),
+        ("bent by 0.5 %", |l| l.bend = 0.005),
+        ("thinned to a quarter", |l| l.points /= 4),
+        ("no ground in the model", |l| l.ground = false),
+        ("no cameras", |l| l.cameras = false),
+    ];
+}

@@ -1,0 +1,83 @@
+//! Runs: the program asked about one case after the other, and what its answers were worth.
+
+use cityweld::city::CityModel;
+use cityweld::planes::PreparedCity;
+use cityweld::synthetic::{Assessment, Case, Errand, Fault, Levels, Setting};
+use cityweld::{AlignOptions, align};
+
+/// Every fourth capture shows one fault alone.
+const ALONE: u64 = 4;
+
+/// One answer.
+#[derive(Clone, Debug)]
+pub struct Run {
+    pub index: u64,
+    pub setting: Setting,
+    pub levels: Levels,
+    /// The one fault of the capture; `None` where all are mixed.
+    pub fault: Option<&'static str>,
+    pub errand: Errand,
+    pub assessment: Assessment,
+}
+
+impl Run {
+    /// One line by which it is found again.
+    pub fn line(&self) -> String {
+        let a = &self.assessment;
+        format!(
+            "case {} {}, {}{}: {:?}, error {:.2} m, stated {:.2} m; held {}: error {:.2} m, stated {:.2} m, chi-square {:.1}",
+            self.index,
+            self.setting.name(),
+            self.errand.name(),
+            self.fault.map_or(String::new(), |fault| format!(", {fault}")),
+            a.outcome(),
+            a.error_m,
+            a.stated_m,
+            a.held,
+            a.held_error_m,
+            a.held_stated_m,
+            a.chi_square,
+        )
+    }
+}
+
+/// All runs of capture `index`: of mixed faults with all errands, or of one fault at the right place.
+pub fn runs_of(seed: u64, index: u64) -> Vec<Run> {
+    if index % ALONE == ALONE - 1 {
+        let faults = Levels::FAULTS.len() as u64;
+        let number = index / ALONE;
+        return alone(seed, index, number / faults, &Levels::FAULTS[(number % faults) as usize]);
+    }
+    let Some(case) = Case::drawn(seed, index - index / ALONE) else { return Vec::new() };
+    // Elsewhere no pose is right, or the start's place says nothing.
+    let errands = if Setting::TOLD_APART.contains(&case.setting) { &Errand::ALL[..] } else { &Errand::ALL[..1] };
+    asked(&case, index, None, errands)
+}
+
+/// The same capture for every fault: what differs is the fault.
+fn alone(seed: u64, index: u64, capture: u64, (name, change): &Fault) -> Vec<Run> {
+    let setting = Setting::TOLD_APART[(capture % Setting::TOLD_APART.len() as u64) as usize];
+    let mut levels = Levels::good();
+    change(&mut levels);
+    let case = Case::with(seed ^ 0xfa17, capture, setting, &levels);
+    case.map_or(Vec::new(), |case| asked(&case, index, Some(*name), &Errand::ALL[..1]))
+}
+
+fn asked(case: &Case, index: u64, fault: Option<&'static str>, errands: &[Errand]) -> Vec<Run> {
+    let prepared = |city: CityModel| PreparedCity::new(city);
+    let Some(city) = case.city().ok().map(prepared) else { return Vec::new() };
+    let points = case.points();
+    let run = |errand: &Errand| {
+        let request = case.request(*errand);
+        let options = AlignOptions { fixed_scale: request.fixed_scale, ..AlignOptions::new(request.start) };
+        let sfm = &case.capture.survey.sfm;
+        let (alignment, truth) = if *errand == Errand::ForeignTown {
+            (align(&prepared(case.foreign_city().ok()?), sfm, None, &options, &|_, _, _| ()), None)
+        } else {
+            (align(&city, sfm, None, &options, &|_, _, _| ()), Some(&case.capture.survey.city_from_sfm))
+        };
+        let assessment = Assessment::new(&alignment, truth, &points);
+        Some(Run { index, setting: case.setting, levels: case.levels, fault, errand: *errand, assessment })
+    };
+    errands.iter().filter_map(run).collect()
+}

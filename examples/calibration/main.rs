@@ -50,7 +50,7 @@ fn main() -> std::io::Result<()> {
         let made: Vec<Vec<Run>> = (next..until).into_par_iter().map(|index| runs_of(arguments.seed, index)).collect();
         for run in made.iter().flatten() {
             if let Some(file) = &mut file {
-                writeln!(file, "{} | {:?}", run.line(), run.levels)?;
+                writeln!(file, "{}", run.line())?;
             }
         }
         runs.extend(made.into_iter().flatten());

@@ -25,7 +25,7 @@ impl Run {
     pub fn line(&self) -> String {
         let a = &self.assessment;
         format!(
-            "case {} {}, {}{}: {:?}, error {:.2} m, stated {:.2} m; held {}: error {:.2} m, stated {:.2} m, chi-square {:.1}",
+            "case {} {}, {}{}: {:?}, error {:.2} m, stated {:.2} m; held {}: error {:.2} m, stated {:.2} m, chi-square {:.1}; {}",
             self.index,
             self.setting.name(),
             self.errand.name(),
@@ -37,6 +37,7 @@ impl Run {
             a.held_error_m,
             a.held_stated_m,
             a.chi_square,
+            self.levels,
         )
     }
 }

@@ -8,7 +8,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::geometry::{Point3, Similarity, Vector3};
+use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
 use crate::verdict::{Alignment, Verdict};
 
 type Vector7 = SVector<f64, 7>;
@@ -195,10 +195,22 @@ fn rms_of(motion: &Vector7, places: &[Vector3<f64>], radius: f64) -> f64 {
 
 /// The truth relative to what was found: rotation vector about the centre, shift of it, logarithm of the scale, as lengths.
 fn error_of(found: &Similarity, truth: &Similarity, center: &Point3<f64>, radius: f64) -> Vector7 {
-    let turn = radius * (truth.rotation * found.rotation.inverse()).scaled_axis();
+    let turn = radius * rotation_vector(&(truth.rotation * found.rotation.inverse()));
     let shift = truth.apply(&found.inverse().apply(center)) - center;
     let scale = radius * (truth.scale / found.scale).ln();
     Vector7::from_column_slice(&[turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, scale])
+}
+
+/// Axis times angle, exact near zero, where an arc cosine has no digits left.
+fn rotation_vector(rotation: &Rotation3<f64>) -> Vector3<f64> {
+    let r = rotation.matrix();
+    let axis = 0.5 * Vector3::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
+    let (sin, cos) = (axis.norm(), 0.5 * (r.trace() - 1.0));
+    if sin > 1e-12 {
+        return axis * (sin.atan2(cos) / sin);
+    }
+    // Half a turn has no skew part; about which axis does not matter to its size.
+    if cos > 0.0 { axis } else { std::f64::consts::PI * Vector3::z() }
 }
 
 fn rms_between(a: &Similarity, b: &Similarity, points: &[Point3<f64>]) -> f64 {
@@ -212,7 +224,6 @@ mod tests {
     use crate::solvers::scene::Chance;
     use crate::synthetic::sfm_from_city;
     use crate::verdict::{Freedom, SearchSummary, Support};
-    use nalgebra::Rotation3;
 
     const RADIUS: f64 = 20.0;
 
@@ -276,6 +287,15 @@ mod tests {
         normalised.sort_by(f64::total_cmp);
         assert!((370..=392).contains(&inside), "{inside} of 400");
         assert!((normalised[200] - 1.0).abs() < 0.1, "{}", normalised[200]);
+    }
+
+    #[test]
+    fn turns_are_measured_whatever_their_size() {
+        for angle in [0.0, 1e-9, 1e-3, 1.0, 3.0, std::f64::consts::PI] {
+            let vector = Vector3::new(0.0, 0.0, angle);
+            let found = rotation_vector(&Rotation3::new(vector));
+            assert!((found.norm() - angle).abs() < 1e-12, "{angle} {found}");
+        }
     }
 
     #[test]

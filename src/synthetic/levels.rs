@@ -37,6 +37,29 @@ pub struct Levels {
 /// A fault taken alone: its name, and what it changes.
 pub type Fault = (&'static str, fn(&mut Levels));
 
+impl std::fmt::Display for Levels {
+    /// One line, faults that are there only.
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let share = |value: f64, name: &str| (value > 0.0).then(|| format!("{name} {value}"));
+        let flag = |is: bool, name: &str| is.then(|| name.to_owned());
+        let told = [
+            share(self.building_m, "houses off"),
+            share(self.plane_m, "planes off"),
+            share(self.eaves_m, "eaves"),
+            flag(self.lids, "flat lids"),
+            share(self.changed, "changed"),
+            share(self.relief, "relief"),
+            share(self.clutter, "clutter"),
+            share(self.outliers, "outliers"),
+            share(self.noise_px, "noise px"),
+            share(self.bend, "bent"),
+            flag(!self.ground, "no ground"),
+            flag(!self.cameras, "no cameras"),
+        ];
+        write!(f, "{} points, {}", self.points, told.into_iter().flatten().collect::<Vec<_>>().join(", "))
+    }
+}
+
 impl Levels {
     /// Half a pixel of noise and nothing else.
     pub fn none() -> Levels {

@@ -2,8 +2,9 @@
 //!
 //!     cargo run --release --example calibration -- --minutes 30 --seed 1
 //!
-//! `docs/calibration.md` says what is measured and how to read it. Same seed, same captures; more minutes, more of them.
+//! `--cure CAPTURE` tells which fault makes one of them wrong. `docs/calibration.md` says what is measured and how to read it. Same seed, same captures; more minutes, more of them.
 
+mod cures;
 mod rates;
 mod runs;
 mod tables;
@@ -34,6 +35,9 @@ struct Arguments {
     /// The first capture
     #[arg(long, default_value_t = 0)]
     first: u64,
+    /// Takes one fault after the other away from this capture, instead
+    #[arg(long, value_name = "CAPTURE")]
+    cure: Option<u64>,
     /// Writes a line for each run
     #[arg(long)]
     runs: Option<PathBuf>,
@@ -41,6 +45,10 @@ struct Arguments {
 
 fn main() -> std::io::Result<()> {
     let arguments = Arguments::parse();
+    if let Some(index) = arguments.cure {
+        cures::print(arguments.seed, index);
+        return Ok(());
+    }
     let begun = Instant::now();
     let mut file = arguments.runs.as_ref().map(std::fs::File::create).transpose()?;
     let end = arguments.first.saturating_add(arguments.captures);

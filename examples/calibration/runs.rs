@@ -14,7 +14,7 @@ pub struct Run {
     pub index: u64,
     pub setting: Setting,
     pub levels: Levels,
-    /// The one fault of the capture; `None` where all are mixed.
+    /// The one fault of the capture, or the one that was taken away; `None` where all are mixed.
     pub fault: Option<&'static str>,
     pub errand: Errand,
     pub assessment: Assessment,
@@ -49,10 +49,15 @@ pub fn runs_of(seed: u64, index: u64) -> Vec<Run> {
         let number = index / ALONE;
         return alone(seed, index, number / faults, &Levels::FAULTS[(number % faults) as usize]);
     }
-    let Some(case) = Case::drawn(seed, index - index / ALONE) else { return Vec::new() };
+    let Some(case) = Case::drawn(seed, mixed_number(index)) else { return Vec::new() };
     // Elsewhere no pose is right, or the start's place says nothing.
     let errands = if Setting::TOLD_APART.contains(&case.setting) { &Errand::ALL[..] } else { &Errand::ALL[..1] };
     asked(&case, index, None, errands)
+}
+
+/// The number among the captures of mixed faults, without gaps.
+pub fn mixed_number(index: u64) -> u64 {
+    index - index / ALONE
 }
 
 /// The same capture for every fault: what differs is the fault.
@@ -64,7 +69,8 @@ fn alone(seed: u64, index: u64, capture: u64, (name, change): &Fault) -> Vec<Run
     case.map_or(Vec::new(), |case| asked(&case, index, Some(*name), &Errand::ALL[..1]))
 }
 
-fn asked(case: &Case, index: u64, fault: Option<&'static str>, errands: &[Errand]) -> Vec<Run> {
+/// The case, asked about each errand.
+pub fn asked(case: &Case, index: u64, fault: Option<&'static str>, errands: &[Errand]) -> Vec<Run> {
     let prepared = |city: CityModel| PreparedCity::new(city);
     let Some(city) = case.city().ok().map(prepared) else { return Vec::new() };
     let points = case.points();

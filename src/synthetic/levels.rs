@@ -34,7 +34,7 @@ pub struct Levels {
     pub cameras: bool,
 }
 
-/// A fault taken alone: its name, and what it changes.
+/// A fault, or its cure: the name, and what it changes.
 pub type Fault = (&'static str, fn(&mut Levels));
 
 impl std::fmt::Display for Levels {
@@ -125,5 +125,23 @@ impl Levels {
         ("thinned to a quarter", |l| l.points /= 4),
         ("no ground in the model", |l| l.ground = false),
         ("no cameras", |l| l.cameras = false),
+    ];
+    /// One fault taken away, to be laid over the levels of a case: what of them makes its answer wrong?
+    pub const CURES: &[Fault] = &[
+        ("as it is", |_| ()),
+        ("houses right", |l| l.building_m = 0.0),
+        ("planes right", |l| l.plane_m = 0.0),
+        ("no eaves", |l| l.eaves_m = 0.0),
+        ("pitched roofs", |l| l.lids = false),
+        ("nothing changed", |l| l.changed = 0.0),
+        ("no relief", |l| l.relief = 0.0),
+        ("no clutter", |l| l.clutter = 0.0),
+        ("no outliers", |l| l.outliers = 0.0),
+        ("half a pixel", |l| l.noise_px = 0.5),
+        ("straight", |l| l.bend = 0.0),
+        ("5000 points", |l| l.points = 5000),
+        ("ground modelled", |l| l.ground = true),
+        ("cameras told", |l| l.cameras = true),
+        ("all of it good", |l| *l = Levels { points: l.points, ..Levels::good() }),
     ];
 }

@@ -281,8 +281,9 @@ pub struct EvidenceLimits {
     pub tolerance_m: f64,
     /// ... or within so many sigmas of the cloud's noise. Derived: 99.7 % of Gaussian noise.
     pub tolerance_sigmas: f64,
-    /// Share of a right pose's lines of sight that the city blocks all the same. Measured on the scenes: 0 to 7 %.
-    pub blocked_when_right: f64,
+    /// Shares of a right pose's lines of sight that the city may block all the same. Measured: 0 to 7 % on rendered scenes, 0 to 26 % on
+    /// generated captures of changed houses.
+    pub blocked_when_right: [f64; 3],
     /// Contenders that met everything alike stand in for what few contenders cannot tell. Chosen: one.
     pub unseen_contenders: f64,
 }
@@ -514,7 +515,7 @@ impl Default for Limits {
                 sight_probes: 3,
                 tolerance_m: 0.3,
                 tolerance_sigmas: 3.0,
-                blocked_when_right: 0.05,
+                blocked_when_right: [0.03, 0.1, 0.25],
                 unseen_contenders: 1.0,
             },
             uncertainty: UncertaintyLimits {

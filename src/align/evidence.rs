@@ -1,6 +1,8 @@
 //! What speaks for the best pose and holds it, and what its rivals have.
 
-use crate::correspondence::{Candidate, ProbeOnPlane, Refiner, Scene, settled};
+use rayon::prelude::*;
+
+use crate::correspondence::{Candidate, Place, ProbeOnPlane, Refiner, Scene, settled};
 use crate::evidence::{Contest, Contestant};
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Matrix7};
@@ -53,11 +55,14 @@ pub(super) fn gather(
     let rows = best.as_ref().map_or(Vec::new(), |best| rows(refiner, &best.city_from_level));
     let hold = hold(refiner, best.as_ref(), given_scale, accuracy_m);
     let findings = best.as_ref().map_or(Findings::default(), |best| best.findings);
-    let pose = |c: &Contestant| c.candidate.refined.city_from_level;
-    let mut rivals: Vec<Rival> = contestants.iter().map(|c| rival(refiner, c, &pose(c))).collect();
-    if let (Some(first), Some(best)) = (contestants.first(), &best) {
-        rivals[0] = rival(refiner, first, &best.city_from_level);
-    }
+    let place = best.as_ref().map(|best| Place::around(refiner, &best.city_from_level));
+    // What the last estimate leads to the best pose is no rival: the search's own gates leave some poses half-way.
+    let last = |c: &Contestant| {
+        let pose = c.candidate.refined.city_from_level;
+        let is_near = place.as_ref().is_some_and(|place| place.has(&pose));
+        if is_near { estimate(refiner, &pose).city_from_level } else { pose }
+    };
+    let rivals: Vec<Rival> = contestants.par_iter().map(|c| rival(refiner, c, &last(c))).collect();
     let by_chance = contest.map_or(&[][..], |contest| &contest.by_chance);
     let speaks = |c: &Contestant| c.weighed.by_witness.iter().filter(|bits| **bits >= SPEAKS_BITS).count();
     let evidence = Evidence {
@@ -103,6 +108,7 @@ fn rival(refiner: &Refiner, contestant: &Contestant, city_from_level: &Similarit
         bits: contestant.weighed.bits,
         bits_of_start: scene.prior.bits(city_from_level),
         beyond_start: !scene.prior.reaches(&candidate.refined.city_from_level),
+        by_chance: contestant.by_chance,
     }
 }
 

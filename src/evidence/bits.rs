@@ -5,7 +5,7 @@
 //! Output       the logarithm of the likelihood ratio to base 2, and what each witness adds to it
 //! Method       the model knows a share m of what the cloud saw, by class of witness; what it knows lies on it with Gaussian errors
 //!              of a scale s, what it does not know meets the city as by chance, and under a right pose both leave their lines
-//!              of sight free but for a few. Neither m nor s is demanded: the ratio is averaged over both, on grids (marginal likelihood). So a cloud
+//!              of sight free but for a share b. None of the three is demanded: the ratio is averaged over them, on grids (marginal likelihood). So a cloud
 //!              of which the model knows a fifth loses a third of a bit by a miss and gains three or four by a hit. The pieces of a witness
 //!              share its one vote: their logarithms are averaged
 //! Source       evidence against chance: Desolneux, Moisan, Morel 2000; Moisan and Stival 2004; marginal likelihoods: Kass and
@@ -38,23 +38,17 @@ type Table = [[f64; KINDS]; SHARES.len()];
 
 /// Weighs what is met.
 pub fn weigh(witnesses: &Witnesses, outcomes: &Outcomes, chance: &Chance, limits: &EvidenceLimits) -> Weighed {
-    let of_scales = SCALES.map(|scale| at_scale(scale, witnesses, outcomes, chance, limits));
-    let bits = log2_mean_exp2(&of_scales.each_ref().map(|weighed| weighed.bits));
-    let likeliest = of_scales.into_iter().max_by(|a, b| a.bits.total_cmp(&b.bits)).unwrap_or_default();
+    let errors = SCALES.iter().flat_map(|&scale| limits.blocked_when_right.map(|blocked| Errors { scale, blocked }));
+    let all: Vec<Weighed> = errors.map(|errors| with_errors(&errors, witnesses, outcomes, chance)).collect();
+    let bits = log2_mean_exp2(&all.iter().map(|weighed| weighed.bits).collect::<Vec<_>>());
+    let likeliest = all.into_iter().max_by(|a, b| a.bits.total_cmp(&b.bits)).unwrap_or_default();
     Weighed { bits, ..likeliest }
 }
 
-fn at_scale(
-    scale: f64,
-    witnesses: &Witnesses,
-    outcomes: &Outcomes,
-    chance: &Chance,
-    limits: &EvidenceLimits,
-) -> Weighed {
-    let right = rates_of_known(scale, limits.blocked_when_right);
-    let tables: [Table; CLASSES] = std::array::from_fn(|class| {
-        SHARES.map(|known| log_ratios(known, &right, &chance.rates[class], limits.blocked_when_right))
-    });
+fn with_errors(errors: &Errors, witnesses: &Witnesses, outcomes: &Outcomes, chance: &Chance) -> Weighed {
+    let right = errors.rates_of_known();
+    let tables: [Table; CLASSES] =
+        std::array::from_fn(|class| SHARES.map(|known| log_ratios(known, &right, &chance.rates[class])));
     let mut logs = vec![[0.0; SHARES.len()]; witnesses.class.len()];
     for (piece, met) in witnesses.pieces.iter().zip(outcomes) {
         let table = &tables[witnesses.class_of(piece)];
@@ -74,20 +68,31 @@ fn at_scale(
     weighed
 }
 
-/// What probes meet on surfaces that the model knows with Gaussian errors of this scale.
-fn rates_of_known(scale: f64, blocked: f64) -> [f64; KINDS] {
-    let within = EDGES.map(|edge| (1.0 - blocked) * erf(edge / (scale * std::f64::consts::SQRT_2)));
-    std::array::from_fn(|kind| match kind {
-        0 => within[0],
-        MISSED => 1.0 - blocked - within[MISSED - 1],
-        BLOCKED => blocked,
-        band => within[band] - within[band - 1],
-    })
+/// How a right pose errs.
+struct Errors {
+    /// Of the model, one sigma, as a share of the tolerance.
+    scale: f64,
+    /// Share of lines of sight that the city blocks all the same.
+    blocked: f64,
+}
+
+impl Errors {
+    /// What probes meet on surfaces that the model knows.
+    fn rates_of_known(&self) -> [f64; KINDS] {
+        let seen = 1.0 - self.blocked;
+        let within = EDGES.map(|edge| seen * erf(edge / (self.scale * std::f64::consts::SQRT_2)));
+        std::array::from_fn(|kind| match kind {
+            0 => within[0],
+            MISSED => seen - within[MISSED - 1],
+            BLOCKED => self.blocked,
+            band => within[band] - within[band - 1],
+        })
+    }
 }
 
 /// The ratios where the model knows a share of what was seen. Blocked lines of sight never speak for a pose.
-fn log_ratios(known: f64, right: &[f64; KINDS], chance: &[f64; KINDS], blocked: f64) -> [f64; KINDS] {
-    let blocked = blocked.min(chance[BLOCKED]);
+fn log_ratios(known: f64, right: &[f64; KINDS], chance: &[f64; KINDS]) -> [f64; KINDS] {
+    let blocked = right[BLOCKED].min(chance[BLOCKED]);
     // Of what chance blocks, a right pose leaves free all but these few.
     let freed = (1.0 - blocked) / (1.0 - chance[BLOCKED]);
     std::array::from_fn(|kind| match kind {
@@ -113,15 +118,19 @@ fn erf(x: f64) -> f64 {
 mod tests {
     use super::*;
 
+    fn rates(scale: f64, blocked: f64) -> [f64; KINDS] {
+        Errors { scale, blocked }.rates_of_known()
+    }
+
     #[test]
     fn the_rates_of_known_surfaces_add_up_to_one_and_sharpen_with_the_scale() {
         for scale in SCALES {
-            let rates = rates_of_known(scale, 0.05);
+            let rates = rates(scale, 0.05);
             assert!((rates.iter().sum::<f64>() - 1.0).abs() < 1e-12 && rates.iter().all(|r| *r >= 0.0), "{rates:?}");
         }
         // Two in three errors lie within one sigma.
         assert!((erf(std::f64::consts::FRAC_1_SQRT_2) - 0.682_689_49).abs() < 2e-7);
-        assert!(rates_of_known(0.08, 0.0)[0] > 0.85 && rates_of_known(0.64, 0.0)[0] < 0.16);
+        assert!(rates(0.08, 0.0)[0] > 0.85 && rates(0.64, 0.0)[0] < 0.16);
     }
 
     #[test]
@@ -129,14 +138,14 @@ mod tests {
         let chance = [0.02, 0.02, 0.03, 0.05, 0.58, 0.3];
         for scale in SCALES {
             for known in SHARES {
-                let ratios = log_ratios(known, &rates_of_known(scale, 0.05), &chance, 0.05);
+                let ratios = log_ratios(known, &rates(scale, 0.05), &chance);
                 let expected: f64 = (0..KINDS).map(|k| chance[k] * ratios[k].exp2()).sum();
                 assert!((expected - 1.0).abs() < 1e-9, "{expected}");
             }
         }
         // Where chance blocks less than a right pose may, nothing is made of it.
         let clear = [0.1, 0.1, 0.1, 0.1, 0.6, 0.0001];
-        let ratios = log_ratios(0.5, &rates_of_known(0.16, 0.05), &clear, 0.05);
+        let ratios = log_ratios(0.5, &rates(0.16, 0.05), &clear);
         assert!(ratios[BLOCKED].abs() < 1e-9 && (0..KINDS).map(|k| clear[k] * ratios[k].exp2()).sum::<f64>() < 1.0);
     }
 

@@ -223,7 +223,7 @@ mod tests {
     use super::*;
     use crate::solvers::scene::Chance;
     use crate::synthetic::sfm_from_city;
-    use crate::verdict::{Freedom, SearchSummary, Support};
+    use crate::verdict::{Certainty, Freedom, ModelErrors, SearchSummary, Support};
 
     const RADIUS: f64 = 20.0;
 
@@ -258,9 +258,12 @@ mod tests {
             reason: String::new(),
             best: Some(off * truth),
             alternatives: Vec::new(),
+            certainty: Certainty::default(),
             origin: Vector3::zeros(),
             center: off.apply(&center),
             radius: RADIUS,
+            accuracy_m: 0.35,
+            model_errors: ModelErrors::default(),
             freedoms: (0..7).map(freedom).collect(),
             covariance,
             support: Support::default(),

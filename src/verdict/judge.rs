@@ -31,6 +31,8 @@ pub struct Rival {
     pub bits_of_start: f64,
     /// Whether it lies beyond the start's reach.
     pub beyond_start: bool,
+    /// Whether it was fitted by chance, and is none of those among which the search chose.
+    pub by_chance: bool,
     /// Share of the vote that lies on the city, 0 to 1.
     pub share: f64,
     /// Share of the vote whose lines of sight the city would block.
@@ -124,7 +126,8 @@ fn differs(a: &Rival, b: &Rival, hold: &Hold, directions: &[HeldDirection], limi
 fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> Certainty {
     let best = &evidence.rivals[0];
     let within: Vec<&&Rival> = others.iter().filter(|r| !r.beyond_start).collect();
-    let search_bits = (1.0 + within.len() as f64).log2();
+    let chosen_from = 1 + within.iter().filter(|r| !r.by_chance).count();
+    let search_bits = (chosen_from as f64).log2();
     // Odds against the pose: chance among all that were tried, and each rival.
     let chance = (search_bits - best.bits).exp2();
     let of_rivals: f64 = within.iter().map(|r| (r.all_bits() - best.all_bits()).exp2()).sum();
@@ -262,7 +265,15 @@ mod tests {
 
     fn rival(shift: [f64; 3], bits: f64) -> Rival {
         let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
-        Rival { city_from_sfm, bits, bits_of_start: -1.0, beyond_start: false, share: 0.5, blocked: 0.0 }
+        Rival {
+            city_from_sfm,
+            bits,
+            bits_of_start: -1.0,
+            beyond_start: false,
+            by_chance: false,
+            share: 0.5,
+            blocked: 0.0,
+        }
     }
 
     /// Two planes that hold everything to 0.05 m, but for the freedom `open`.

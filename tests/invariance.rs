@@ -60,7 +60,10 @@ fn changes(sampled: impl Fn(&Scene) -> Alignment + Sync) -> Vec<String> {
             )
         })
     };
-    scenes().par_iter().filter_map(change).collect()
+    let changes: Vec<String> = scenes().par_iter().filter_map(change).collect();
+    // For whoever asks with --nocapture.
+    changes.iter().for_each(|line| println!("{line}"));
+    changes
 }
 
 fn with_points(chosen: impl Fn(usize) -> Vec<usize> + Sync) -> Vec<String> {

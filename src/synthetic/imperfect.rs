@@ -60,6 +60,14 @@ struct Found {
     seen: Vec<usize>,
 }
 
+/// A point of the reconstruction, before it gets the frame.
+struct Made {
+    at: Point3<f64>,
+    face: Option<usize>,
+    is_wrong: bool,
+    seen: Vec<usize>,
+}
+
 /// Photographs; `keeps` tells which points are left. `None` where too little is seen.
 pub(super) fn photographed(
     world: &World,
@@ -184,9 +192,9 @@ fn reconstructed(found: &[Found], images: Vec<Image>, levels: &Levels, seed: u64
         let along = along * std::f64::consts::FRAC_1_SQRT_2 * (noise.normal() + shared);
         across * noise.normal_vector() + along * line.normalize()
     };
-    let mut points: Vec<(Point3<f64>, Option<usize>, bool, Vec<usize>)> = Vec::new();
+    let mut points: Vec<Made> = Vec::new();
     for (f, at) in found.iter().zip(&bent) {
-        points.push((at + off(f, &mut noise), f.face, false, f.seen.clone()));
+        points.push(Made { at: at + off(f, &mut noise), face: f.face, is_wrong: false, seen: f.seen.clone() });
     }
     points.extend(wrong_points(found, &bent, &images, levels, &mut noise));
     for i in 0..points.len() {
@@ -197,21 +205,21 @@ fn reconstructed(found: &[Found], images: Vec<Image>, levels: &Levels, seed: u64
     let mut sfm = Reconstruction::default();
     if levels.cameras && !images.is_empty() {
         sfm = Reconstruction { cameras: vec![camera()], camera_ids: vec![1], images, track_starts: vec![0], ..sfm };
-        for (at, .., seen) in &points {
+        for Made { at, seen, .. } in &points {
             let pixels: Vec<(usize, [f64; 2])> =
                 seen.iter().map(|i| (*i, keypoint(&sfm, *i, at, levels, &mut noise))).collect();
             add_point(&mut sfm, *at, &pixels);
         }
     } else {
-        sfm.points = points.iter().map(|(at, ..)| *at).collect();
+        sfm.points = points.iter().map(|made| made.at).collect();
     }
     sfm.transform(&sfm_from_bent);
     let survey = Survey {
         sfm,
         city_from_sfm: plan_from_bent * sfm_from_bent.inverse(),
-        face_of_point: points.iter().map(|(_, face, ..)| *face).collect(),
+        face_of_point: points.iter().map(|made| made.face).collect(),
     };
-    Imperfect { survey, is_wrong: points.iter().map(|(_, _, wrong, _)| *wrong).collect() }
+    Imperfect { survey, is_wrong: points.iter().map(|made| made.is_wrong).collect() }
 }
 
 /// Half anywhere about the cloud, half along a line of sight at a wrong depth.
@@ -221,7 +229,7 @@ fn wrong_points(
     images: &[Image],
     levels: &Levels,
     noise: &mut Chance,
-) -> Vec<(Point3<f64>, Option<usize>, bool, Vec<usize>)> {
+) -> Vec<Made> {
     let count = (bent.len() as f64 * levels.outliers / (1.0 - levels.outliers)) as usize;
     let (low, high) = bent.iter().fold((bent[0], bent[0]), |(low, high), x| (low.inf(x), high.sup(x)));
     let wrong = |noise: &mut Chance| {
@@ -235,7 +243,7 @@ fn wrong_points(
         {
             seen.push((first + whole(noise, 1, images.len())) % images.len());
         }
-        (if is_anywhere { anywhere } else { astray }, None, true, seen)
+        Made { at: if is_anywhere { anywhere } else { astray }, face: None, is_wrong: true, seen }
     };
     (0..count).map(|_| wrong(noise)).collect()
 }

@@ -1,5 +1,7 @@
 //! The world about a place: houses with relief, ground, clutter; what a line of sight meets there.
 
+use std::f64::consts::TAU;
+
 use super::block::Block;
 use super::clutter::{Thing, clutter};
 use super::draws::{between, stream};
@@ -13,6 +15,9 @@ const GRAZING_COS: f64 = 0.12;
 
 /// Leaves stand so far, one sigma, about the surface that hides what is behind them, metres.
 const LEAVES_M: f64 = 0.35;
+
+/// The ground rises and falls over so much, metres.
+const WAVE_M: f64 = 40.0;
 
 /// What a point lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +87,7 @@ impl World {
             (*matter, Relief::new(face, level, seed.wrapping_add(2), number))
         };
         let mut chance = stream(seed, 3);
-        let wave = |_| (6.28 / 40.0 * chance.normal_vector(), 6.28 * chance.uniform());
+        let wave = |_| (TAU / WAVE_M * chance.normal_vector(), TAU * chance.uniform());
         World {
             faces: all.iter().enumerate().map(relief).collect(),
             normals: all.iter().map(|(_, face)| face.normal()).collect(),

@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector4};
 
 use super::prior::Prior;
-use super::targets::Target;
+use super::targets::{Bounds, Target};
 use crate::geometry::{Plane, Point3, Vector3};
 use crate::limits::Limits;
 use crate::robust::Random;
@@ -38,8 +38,7 @@ pub(super) struct Expectation<'a> {
     arm: Vector3<f64>,
     row_variance: f64,
     /// The box that holds its centre within three sigmas.
-    low: Vector3<f64>,
-    high: Vector3<f64>,
+    pub bounds: Bounds,
 }
 
 impl Expectation<'_> {
@@ -47,15 +46,16 @@ impl Expectation<'_> {
     #[inline]
     pub fn likelihood(&self, target: &Target) -> Option<f64> {
         // The patch's centre must be able to lie within the target's box.
-        if (0..3).any(|k| self.high[k] < target.low[k] || self.low[k] > target.high[k]) {
+        if !self.bounds.meets(&target.bounds) {
             return None;
         }
-        let n = &target.plane.normal;
+        let n = target.normal();
         let row = Vector4::new(n.dot(&self.arm), n.x, n.y, n.z);
-        let residual = row.dot(&self.belief.mean) + target.plane.offset;
+        let residual = row.dot(&self.belief.mean) + target.offset();
         let variance = row.dot(&(self.belief.covariance * row)) + self.row_variance;
+        let reach = self.belief.errors.reach_sigmas;
         let miss_sq = residual * residual / variance;
-        (miss_sq <= self.belief.errors.reach_sigmas.powi(2)).then(|| target.weight * (-0.5 * miss_sq).exp())
+        (miss_sq <= reach * reach).then(|| f64::from(target.weight) * (-0.5 * miss_sq).exp())
     }
 }
 
@@ -132,13 +132,21 @@ impl Belief {
         };
         let slack = Vector3::new(slack(0), slack(1), slack(2));
         let expected = arm * self.mean[0] + self.mean.fixed_rows::<3>(1);
-        Expectation { belief: self, arm, row_variance, low: expected - slack, high: expected + slack }
+        Expectation {
+            belief: self,
+            arm,
+            row_variance,
+            bounds: Bounds::in_space(&(expected - slack), &(expected + slack)),
+        }
     }
 
     /// Rows for the `missing` least known combinations of scale and translation, each at a value drawn evenly from the three
     /// sigmas that are left of it, and the chance that this meets the truth; `None` where the scale alone is open, which no plane
     /// can fix.
     pub fn completion(&self, missing: usize, random: &mut Random) -> Option<(Vec<Row>, f64)> {
+        if missing == 0 {
+            return Some((Vec::new(), 1.0));
+        }
         // The scale counts by what it moves at the scene's radius, so that all four are metres and the unit changes nothing.
         let metres = Vector4::new(self.errors.radius_m, 1.0, 1.0, 1.0);
         let eigen =
@@ -187,8 +195,9 @@ impl Belief {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::city::ObjectId;
     use crate::geometry::{Similarity, Start};
-    use crate::planes::PlaneId;
+    use crate::planes::{CityPlane, PlaneId};
     use crate::robust::Motion;
 
     fn belief(motion: Motion) -> Belief {
@@ -198,15 +207,15 @@ mod tests {
     }
 
     fn wall(low: f64, offset: f64) -> Target {
-        Target {
-            id: PlaneId(0),
+        let plane = CityPlane {
             plane: Plane { normal: Vector3::x(), offset },
-            azimuth: 0.0,
-            elevation: 0.0,
+            facets: Vec::new(),
+            area_m2: 1.0,
             low: Point3::new(5.0, 30.0, low),
             high: Point3::new(5.0, 50.0, low + 5.0),
-            weight: 1.0,
-        }
+            object: ObjectId(0),
+        };
+        Target::new(PlaneId(0), &plane)
     }
 
     #[test]

@@ -26,8 +26,11 @@ impl Problem for PoseSearch<'_> {
     }
 
     fn score(&self, pose: &Similarity) -> f64 {
-        // Wide: a minimal sample extrapolates the noise of a few patches over the whole scene.
-        self.scene.score(self.panel, pose, self.scene.limits.search.gate_units * self.scene.unit_m)
+        self.scene.score(self.panel, pose, self.gate_m())
+    }
+
+    fn score_from(&self, pose: &Similarity, least: f64) -> Option<f64> {
+        self.scene.score_from(self.panel, pose, self.gate_m(), least)
     }
 
     fn same(&self, a: &Similarity, b: &Similarity) -> bool {
@@ -36,6 +39,11 @@ impl Problem for PoseSearch<'_> {
 }
 
 impl PoseSearch<'_> {
+    /// Wide: a minimal sample extrapolates the noise of a few patches over the whole scene.
+    fn gate_m(&self) -> f64 {
+        self.scene.limits.search.gate_units * self.scene.unit_m
+    }
+
     /// Draws one sample and appends its poses within the start's reach. Tells the chance that the sample is right; `None` where
     /// its patches fit nothing or cannot give the points.
     pub fn sample(&self, random: &mut Random, poses: &mut Vec<Similarity>) -> Option<f64> {

@@ -12,7 +12,6 @@
 use rayon::prelude::*;
 
 use super::scene::Scene;
-use super::scoring::Mover;
 use crate::geometry::{Point3, Similarity};
 use crate::planes::Hit;
 use crate::robust::{Chart, Motion, NormalEquations, tukey_weight};
@@ -109,24 +108,25 @@ impl<'a> Refiner<'a> {
     pub fn probes_on_planes(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Vec<ProbeOnPlane> {
         let chunk = |panel: &[u32]| self.chunk_on_planes(panel, pose, gate_m * pose.scale);
         let mut rows = panel.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat();
-        rows.sort_by_key(|r| r.hit.plane);
+        rows.sort_by_cached_key(|r| r.hit.plane);
         rows
     }
 
     fn chunk_on_planes(&self, panel: &[u32], pose: &Similarity, firm_gate_m: f64) -> Vec<ProbeOnPlane> {
         let (votes, limits) = (&self.scene.votes, &self.scene.limits.refinement);
-        let mover = Mover::new(pose);
         let loose_gate_m = firm_gate_m.min(limits.loose_gate_sigmas * self.point_sigma_m);
-        let row = |&i: &u32| {
-            let probe = mover.probe(&votes.probes[i as usize]);
-            let is_firm = (i as usize) < votes.firm;
-            let (gate_m, trust) = if is_firm { (firm_gate_m, 1.0) } else { (loose_gate_m, limits.loose_weight) };
-            let hit = self.scene.nearest(&probe, gate_m)?;
-            let weight = trust * tukey_weight(hit.across_m * hit.across_m, gate_m);
-            let lies_on = hit.outside_m <= limits.outside_share * gate_m && weight > 0.0;
-            lies_on.then_some(ProbeOnPlane { probe: i, place: probe.position, hit, weight })
-        };
-        panel.iter().filter_map(row).collect()
+        let is_firm = |i: u32| (i as usize) < votes.firm;
+        let gate_m = |i: u32| if is_firm(i) { firm_gate_m } else { loose_gate_m };
+        let mut rows = Vec::new();
+        self.scene.meet(panel, pose, firm_gate_m, gate_m, |k, probe, hit| {
+            let i = panel[k];
+            let trust = if is_firm(i) { 1.0 } else { limits.loose_weight };
+            let weight = trust * tukey_weight(hit.across_m * hit.across_m, gate_m(i));
+            if hit.outside_m <= limits.outside_share * gate_m(i) && weight > 0.0 {
+                rows.push(ProbeOnPlane { probe: i, place: probe.position, hit: *hit, weight });
+            }
+        });
+        rows
     }
 
     fn equations(&self, chart: &Chart, rows: &[ProbeOnPlane]) -> NormalEquations {

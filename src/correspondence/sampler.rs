@@ -13,6 +13,9 @@
 //!
 //! Frames: `level` is centred on the cloud, z up, in metres of the start; the city frame is its own local one.
 
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use nalgebra::Matrix3;
 
 use super::belief::{Belief, RowErrors};
@@ -22,7 +25,7 @@ use super::targets::{LEAST_SIN_FOR_AZIMUTH, Target, Targets, azimuth, elevation,
 use super::votes::{LevelPatch, Votes};
 use crate::geometry::{Plane, Rotation3, Vector3};
 use crate::limits::SearchLimits;
-use crate::planes::PlaneId;
+use crate::planes::{CityPlanes, PlaneId};
 use crate::robust::{Motion, Random};
 use crate::solvers::Row;
 
@@ -53,11 +56,30 @@ pub struct Sampler<'a> {
     prior: &'a Prior,
     limits: &'a SearchLimits,
     errors: RowErrors,
+    planes: &'a CityPlanes,
     targets: Targets,
     /// Rising sums of the patches' weights: all, and those with an azimuth.
     all: Vec<f64>,
     turned: Vec<f64>,
+    /// For each patch what it is offered as the first of a sample, which nothing but the prior decides; found when first asked.
+    firsts: Vec<OnceLock<Offers>>,
+    /// Offers kept in `firsts`.
+    kept: AtomicUsize,
 }
+
+/// All that a patch may lie on.
+#[derive(Default)]
+struct Offers {
+    /// Rising sums of the likelihoods.
+    sums: Vec<f64>,
+    /// The targets, and whether the patch is turned over.
+    what: Vec<(PlaneId, bool)>,
+    /// That a draw takes the right one.
+    chance: f64,
+}
+
+/// Offers beyond so many are found anew with each draw: what a city without a start would offer must not fill the memory. Chosen: 32 MB.
+const MOST_OFFERS_KEPT: usize = 2_000_000;
 
 /// Two normals nearer to parallel than this do not fix a rotation.
 const LEAST_SIN_BETWEEN: f64 = 0.3;
@@ -84,7 +106,10 @@ impl<'a> Sampler<'a> {
             prior,
             limits,
             errors: RowErrors::new(scene.limits, votes.radius_m),
+            planes: scene.city.planes(),
             targets: Targets::new(scene.city.planes(), &in_sight, limits.smallest_target_m2),
+            firsts: votes.patches.iter().map(|_| OnceLock::new()).collect(),
+            kept: AtomicUsize::new(0),
             all: rising(|_| true),
             turned: rising(|p| has_azimuth(&p.normal)),
         }
@@ -123,10 +148,9 @@ impl<'a> Sampler<'a> {
 
     /// Known up: one pair, and the heading that turns its patch into its plane.
     fn begin_level(&self, random: &mut Random) -> Option<Draft> {
-        let first = random.weighted(&self.turned)?;
-        let Drawn { what: (rotation, pair), chance } = self.turned_pair(first, random)?;
-        let mut draft = Draft::new(self.belief(rotation));
-        draft.take(self.votes, Drawn { what: pair, chance });
+        let pair = self.first_pair(random.weighted(&self.turned)?, random)?;
+        let mut draft = Draft::new(self.belief(about_up_from(&pair.what.normal, &pair.what.target.normal)));
+        draft.take(self.votes, pair);
         Some(draft)
     }
 
@@ -137,7 +161,7 @@ impl<'a> Sampler<'a> {
         if normal(first).cross(normal(second)).norm() < LEAST_SIN_BETWEEN {
             return None;
         }
-        let pair = self.leaning_pair(first, random)?;
+        let pair = self.first_pair(first, random)?;
         let Drawn { what: (rotation, other), chance } = self.second_pair(&pair.what, second, random)?;
         let mut draft = Draft::new(self.belief(rotation));
         draft.take(self.votes, pair);
@@ -149,42 +173,64 @@ impl<'a> Sampler<'a> {
         Belief::new(self.prior, rotation, self.errors)
     }
 
-    /// A plane for the first patch under known up, and the turn about up that leads the patch into it.
-    fn turned_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<(Matrix3<f64>, Pair)>> {
-        let p = &self.votes.patches[patch];
-        let reach = self.prior.most_heading_rad();
-        let belief = self.belief(Matrix3::identity());
-        let mut choice = Choice::default();
-        for normal in sides(p) {
-            let has_same_tilt = self.tilted_as(&normal);
-            for t in self.targets.facing(azimuth(&normal), reach).filter(|t| has_same_tilt(t)) {
-                let rotation = about_up_from(&normal, &t.plane.normal);
-                let turned = belief.turned(rotation);
-                if let Some(likelihood) = turned.expect(&p.center).likelihood(t) {
-                    choice.offer(likelihood, (rotation, t.with(patch, normal)), random);
-                }
-            }
+    /// A plane for the first patch of a sample.
+    fn first_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<Pair>> {
+        let kept = &self.firsts[patch];
+        if kept.get().is_some() || self.kept.load(Ordering::Relaxed) < MOST_OFFERS_KEPT {
+            return self.draw_first(patch, kept.get_or_init(|| self.counted(self.first_offers(patch))), random);
         }
-        choice.drawn()
+        self.draw_first(patch, &self.first_offers(patch), random)
     }
 
-    /// A plane for the first patch under free up. Its normal is laid onto the plane's; what stays open is a spin about it,
-    /// which moves the patch within its plane and not across.
-    fn leaning_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<Pair>> {
-        let p = &self.votes.patches[patch];
-        let belief = self.belief(Matrix3::identity());
-        let mut choice = Choice::default();
-        for normal in sides(p) {
-            let turn_onto = self.turning(&normal);
-            for t in self.targets.all() {
-                let Some(rotation) = turn_onto(t) else { continue };
-                let leaning = belief.turned(rotation).spinning(self.prior.spin_sigma_about(&t.plane.normal));
-                if let Some(likelihood) = leaning.expect(&p.center).likelihood(t) {
-                    choice.offer(likelihood, t.with(patch, normal), random);
-                }
+    fn counted(&self, offers: Offers) -> Offers {
+        self.kept.fetch_add(offers.what.len(), Ordering::Relaxed);
+        offers
+    }
+
+    fn draw_first(&self, patch: usize, offers: &Offers, random: &mut Random) -> Option<Drawn<Pair>> {
+        let (id, is_turned_over) = offers.what[random.weighted(&offers.sums)?];
+        let normal = self.votes.patches[patch].normal;
+        let normal = if is_turned_over { -normal } else { normal };
+        Some(Drawn { what: self.pair(patch, normal, id), chance: offers.chance })
+    }
+
+    fn first_offers(&self, patch: usize) -> Offers {
+        let mut offers = Offers::default();
+        for (normal, is_turned_over) in sides(&self.votes.patches[patch]).zip([false, true]) {
+            let offer = |t: &Target, likelihood: f64| offers.add(likelihood, (t.id, is_turned_over));
+            if self.up_is_known() {
+                self.offer_turned(patch, &normal, offer);
+            } else {
+                self.offer_leaning(patch, &normal, offer);
             }
         }
-        choice.drawn()
+        offers.finish()
+    }
+
+    /// Planes for the first patch under known up, by the turn about up that leads the patch into each.
+    fn offer_turned(&self, patch: usize, normal: &Vector3<f64>, mut offer: impl FnMut(&Target, f64)) {
+        let belief = self.belief(Matrix3::identity());
+        let has_same_tilt = self.tilted_as(normal);
+        self.targets.each_facing(azimuth(normal), self.prior.most_heading_rad(), |t| {
+            if has_same_tilt(t) {
+                let turned = belief.turned(about_up_from(normal, &t.normal()));
+                let likelihood = turned.expect(&self.votes.patches[patch].center).likelihood(t);
+                likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
+            }
+        });
+    }
+
+    /// Planes for the first patch under free up. Its normal is laid onto the plane's; what stays open is a spin about it, which moves the
+    /// patch within its plane and not across.
+    fn offer_leaning(&self, patch: usize, normal: &Vector3<f64>, mut offer: impl FnMut(&Target, f64)) {
+        let belief = self.belief(Matrix3::identity());
+        let turn_onto = self.turning(normal);
+        for t in self.targets.all() {
+            let Some(rotation) = turn_onto(t) else { continue };
+            let leaning = belief.turned(rotation).spinning(self.prior.spin_sigma_about(&t.normal()));
+            let likelihood = leaning.expect(&self.votes.patches[patch].center).likelihood(t);
+            likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
+        }
     }
 
     /// A plane for the second patch under free up, and the rotation that lays both normals along their planes'.
@@ -197,10 +243,11 @@ impl<'a> Sampler<'a> {
             let cos = first.normal.dot(&normal);
             let Some(level_axes) = bisectors(&first.normal, &normal) else { continue };
             for t in self.targets.all() {
-                if (first.target.normal.dot(&t.plane.normal) - cos).abs() > self.limits.same_cos {
+                let towards = t.normal();
+                if (first.target.normal.dot(&towards) - cos).abs() > self.limits.same_cos {
                     continue;
                 }
-                let Some(city_axes) = bisectors(&first.target.normal, &t.plane.normal) else { continue };
+                let Some(city_axes) = bisectors(&first.target.normal, &towards) else { continue };
                 let rotation = city_axes * level_axes.transpose();
                 if !self.allows(&rotation) {
                     continue;
@@ -208,11 +255,16 @@ impl<'a> Sampler<'a> {
                 let mut turned = belief.turned(rotation);
                 turned.learn(first_center, &first.target);
                 if let Some(likelihood) = turned.expect(&p.center).likelihood(t) {
-                    choice.offer(likelihood, (rotation, t.with(patch, normal)), random);
+                    choice.offer(likelihood, (rotation, normal, t.id), random);
                 }
             }
         }
-        choice.drawn()
+        let Drawn { what: (rotation, normal, id), chance } = choice.drawn()?;
+        Some(Drawn { what: (rotation, self.pair(patch, normal, id)), chance })
+    }
+
+    fn pair(&self, patch: usize, normal: Vector3<f64>, plane: PlaneId) -> Pair {
+        Pair { patch: patch as u32, plane, target: self.planes.planes[plane.0 as usize].plane, normal }
     }
 
     /// The rotation that lays a normal onto a target's: a heading first, as far as both have an azimuth, then the least tilt;
@@ -226,15 +278,16 @@ impl<'a> Sampler<'a> {
         let most_tilt = tilt + self.limits.same_angle_rad;
         let least_cos = most_tilt.min(std::f64::consts::PI).cos();
         move |t| {
-            let both_turned = has && has_azimuth(&t.plane.normal);
-            let heading = if both_turned { wrapped(t.azimuth - own[0]) } else { 0.0 };
-            if heading.abs() > most_heading || (t.elevation - own[1]).abs() > most_tilt {
+            let towards = t.normal();
+            let both_turned = has && has_azimuth(&towards);
+            let heading = if both_turned { wrapped(t.azimuth() - own[0]) } else { 0.0 };
+            if heading.abs() > most_heading || (f64::from(t.elevation) - own[1]).abs() > most_tilt {
                 return None;
             }
             let upright = about_up(heading);
             let turned = upright * normal;
-            let within = turned.dot(&t.plane.normal) >= least_cos;
-            let leaning = within.then(|| Rotation3::rotation_between(&turned, &t.plane.normal))??;
+            let within = turned.dot(&towards) >= least_cos;
+            let leaning = within.then(|| Rotation3::rotation_between(&turned, &towards))??;
             Some(leaning.into_inner() * upright)
         }
     }
@@ -268,29 +321,43 @@ impl<'a> Sampler<'a> {
         let mut choice = Choice::default();
         for side in sides(p) {
             let normal = belief.turn(&side);
-            let level: &[Target] = if has_azimuth(&normal) { &[] } else { &self.targets.level };
-            let turned =
-                self.targets.facing(azimuth(&normal), if level.is_empty() { self.limits.same_angle_rad } else { 0.0 });
             let has_same_tilt = self.tilted_as(&normal);
-            for t in turned.chain(level).filter(|t| has_same_tilt(t)) {
-                if let Some(likelihood) = expected.likelihood(t) {
-                    choice.offer(likelihood, t.with(patch, side), random);
+            let offer = |t: &Target| {
+                if let Some(likelihood) = has_same_tilt(t).then(|| expected.likelihood(t)).flatten() {
+                    choice.offer(likelihood, (side, t.id), random);
                 }
+            };
+            if has_azimuth(&normal) || !self.targets.has_level() {
+                let reach = self.limits.same_angle_rad;
+                self.targets.each_facing_within(azimuth(&normal), reach, &expected.bounds, offer);
+            } else {
+                self.targets.each_level(&expected.bounds, offer);
             }
         }
-        choice.drawn()
+        let Drawn { what: (side, id), chance } = choice.drawn()?;
+        Some(Drawn { what: self.pair(patch, side, id), chance })
     }
 
     /// Whether a target is tilted as a normal is.
     fn tilted_as(&self, normal: &Vector3<f64>) -> impl Fn(&Target) -> bool + use<> {
-        let (own, most) = (elevation(normal), self.limits.same_angle_rad);
+        let (own, most) = (elevation(normal) as f32, self.limits.same_angle_rad as f32);
         move |target| (own - target.elevation).abs() < most
     }
 }
 
-impl Target {
-    fn with(&self, patch: usize, normal: Vector3<f64>) -> Pair {
-        Pair { patch: patch as u32, plane: self.id, target: self.plane, normal }
+impl Offers {
+    fn add(&mut self, likelihood: f64, what: (PlaneId, bool)) {
+        let before = self.sums.last().copied().unwrap_or(0.0);
+        self.sums.push(before + likelihood);
+        self.what.push(what);
+        self.chance += likelihood * likelihood;
+    }
+
+    fn finish(mut self) -> Offers {
+        self.sums.shrink_to_fit();
+        self.what.shrink_to_fit();
+        let total = self.sums.last().copied().unwrap_or(0.0);
+        Offers { chance: self.chance / (total * total), ..self }
     }
 }
 
@@ -314,9 +381,15 @@ impl Draft {
 }
 
 /// One of a stream of offers, drawn with probability proportional to their weights.
+///
+/// An offer takes the place of those before it with the share that it has of the total so far. So the one that is taken stays until
+/// the total exceeds its own, divided by an even draw: one random number for each change and not for each offer (Efraimidis and
+/// Spirakis 2006, with jumps).
 struct Choice<T> {
     total: f64,
     total_of_squares: f64,
+    /// The total at which the next offer is taken.
+    next: f64,
     taken: Option<T>,
 }
 
@@ -328,7 +401,7 @@ struct Drawn<T> {
 
 impl<T> Default for Choice<T> {
     fn default() -> Self {
-        Choice { total: 0.0, total_of_squares: 0.0, taken: None }
+        Choice { total: 0.0, total_of_squares: 0.0, next: 0.0, taken: None }
     }
 }
 
@@ -336,8 +409,9 @@ impl<T> Choice<T> {
     fn offer(&mut self, weight: f64, what: T, random: &mut Random) {
         self.total += weight;
         self.total_of_squares += weight * weight;
-        if random.unit() * self.total < weight {
+        if self.total > self.next {
             self.taken = Some(what);
+            self.next = self.total / (1.0 - random.unit());
         }
     }
 
@@ -450,5 +524,38 @@ mod tests {
         // Two offers alike: right every other time. Three quarters and a quarter: 9/16 + 1/16.
         assert_eq!(drawn(&[2.0, 2.0]), Some(0.5));
         assert_eq!(drawn(&[3.0, 1.0]), Some(0.625));
+    }
+
+    #[test]
+    fn offers_are_drawn_as_often_as_they_weigh() {
+        let weights = [1.0, 0.0, 5.0, 0.5, 2.5, 1.0];
+        let mut counts = [0; 6];
+        for stream in 0..20_000 {
+            let mut random = Random::stream(3, stream);
+            let mut choice = Choice::default();
+            (0..).zip(weights).for_each(|(i, w)| choice.offer(w, i, &mut random));
+            let taken: usize = choice.drawn().map(|drawn| drawn.what).unwrap();
+            counts[taken] += 1;
+        }
+        for (count, weight) in counts.into_iter().zip(weights) {
+            let expected = 2000.0 * weight;
+            // Five standard deviations.
+            assert!((f64::from(count) - expected).abs() <= 5.0 * expected.sqrt(), "{counts:?}");
+        }
+    }
+
+    #[test]
+    fn offers_that_are_not_kept_are_the_same() {
+        let made = Made::four_houses();
+        for scene in [made.scene(&OFF, Motion::Similarity), made.leaning_scene(&OFF, Motion::Similarity)] {
+            let kept = samples(&scene);
+            let forgetful = Sampler::new(&scene);
+            forgetful.kept.store(MOST_OFFERS_KEPT, Ordering::Relaxed);
+            let draw = |stream| forgetful.draw(4, &mut Random::stream(7, stream));
+            let found: Vec<Sample> = (0..2000).filter_map(draw).collect();
+            assert_eq!(found.len(), kept.len());
+            let told = |sample: &Sample| sample.pairs.iter().map(|p| (p.patch, p.plane)).collect::<Vec<_>>();
+            assert!(found.iter().zip(&kept).all(|(a, b)| told(a) == told(b) && a.chance == b.chance));
+        }
     }
 }

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use super::prior::{Prior, Reach};
+use super::scoring::Mover;
 use super::votes::Votes;
-use crate::geometry::{Similarity, Start};
+use crate::geometry::{Point3, Similarity, Start, Vector3};
 use crate::limits::Limits;
-use crate::planes::{FacetGrid, Hit, Patches, PreparedCity, Probe, Upright};
+use crate::planes::{FacetGrid, Facing, Hit, Look, Patches, PreparedCity, Probe, Upright};
 use crate::robust::Motion;
 
 /// A cloud in a city.
@@ -18,12 +19,15 @@ pub struct Scene<'a> {
     /// The part of the city that the cloud can come to lie in. What lies beyond is met by stray points alone, of which a handful would count
     /// as much as a facade: a plane's own error bounds what its points say.
     pub reach: Reach,
-    /// Of the city, for the gates of refinement and for those of the search: the shorter a grid reaches, the fewer facets it looks at.
+    /// Of the city, for the gates of refinement and for those of the search.
     narrow_grid: Arc<FacetGrid>,
     wide_grid: Arc<FacetGrid>,
     /// What "near" means to all gates, metres of the start.
     pub unit_m: f64,
 }
+
+/// Probes that are looked up together.
+const BLOCK: usize = 32;
 
 impl<'a> Scene<'a> {
     /// `start` maps to the city's local frame; with a rigid motion its scale is the given one.
@@ -47,13 +51,63 @@ impl<'a> Scene<'a> {
     }
 
     /// The facet that a point lies on.
-    #[inline]
+    #[cfg(test)]
     pub fn nearest(&self, probe: &Probe, gate_m: f64) -> Option<Hit> {
         if !self.reach.contains(&probe.position) {
             return None;
         }
-        let grid = if gate_m <= self.narrow_grid.reach_m() { &self.narrow_grid } else { &self.wide_grid };
-        self.city.nearest(grid, probe, gate_m)
+        self.city.nearest(self.grid(gate_m), probe, gate_m)
+    }
+
+    /// Tells `see` which probes of a panel (by their place in it, in order) meet a facet under a pose, where in the city, and which. Each
+    /// probe has a gate of its own, metres of the city, the widest of which is told beforehand.
+    #[inline]
+    pub fn meet(
+        &self,
+        panel: &[u32],
+        city_from_level: &Similarity,
+        widest_m: f64,
+        gate_m: impl Fn(u32) -> f64,
+        mut see: impl FnMut(usize, &Probe, &Hit),
+    ) {
+        let (mover, grid) = (Mover::new(city_from_level), self.grid(widest_m));
+        let mut facing: Option<(u32, Vector3<f64>, Facing)> = None;
+        let mut looks: Vec<(usize, Point3<f64>, Look)> = Vec::with_capacity(BLOCK);
+        for first in (0..panel.len()).step_by(BLOCK) {
+            let block = first..panel.len().min(first + BLOCK);
+            looks.clear();
+            for k in block {
+                let place = mover.place(&self.votes.probes[panel[k] as usize]);
+                let look = if self.reach.contains(&place) { self.city.look(grid, &place) } else { None };
+                looks.extend(look.map(|look| (k, place, look)));
+            }
+            // Memory takes long to answer, but answers several at once: first all are asked, step by step, and then looked at.
+            looks.iter_mut().for_each(|(_, _, look)| look.find_list());
+            looks.iter().for_each(|(_, _, look)| look.fetch_list());
+            looks.retain(|(_, _, look)| !look.is_empty());
+            looks.iter().for_each(|(_, _, look)| look.fetch_triangles());
+            for (k, position, look) in &looks {
+                let i = panel[*k];
+                let probe = &self.votes.probes[i as usize];
+                // Probes of one patch face one way.
+                let (_, normal, facing) = match &mut facing {
+                    Some(known) if faces_as(&self.votes.probes[known.0 as usize], probe) => known,
+                    other => {
+                        let normal = mover.direction(probe);
+                        other.insert((i, normal, grid.facing(&normal, probe.min_cos, probe.sided)))
+                    }
+                };
+                let probe = Probe { position: *position, normal: *normal, ..*probe };
+                if let Some(hit) = look.nearest(&probe, facing, gate_m(i)) {
+                    see(*k, &probe, &hit);
+                }
+            }
+        }
+    }
+
+    /// The shorter a grid reaches, the fewer facets it looks at.
+    fn grid(&self, gate_m: f64) -> &FacetGrid {
+        if gate_m <= self.narrow_grid.reach_m() { &self.narrow_grid } else { &self.wide_grid }
     }
 
     /// To the city's local frame.
@@ -62,11 +116,16 @@ impl<'a> Scene<'a> {
     }
 }
 
+#[inline]
+fn faces_as(probe: &Probe, other: &Probe) -> bool {
+    probe.normal == other.normal && probe.min_cos == other.min_cos && probe.sided == other.sided
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::correspondence::test_scene::{Made, walls_alone};
-    use crate::geometry::{Point3, StartSigmas, Vector3};
+    use crate::geometry::StartSigmas;
     use crate::planes::PlaneId;
     use crate::synthetic::{Block, Offset};
 

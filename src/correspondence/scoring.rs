@@ -13,7 +13,9 @@ use crate::robust::vote;
 impl Scene<'_> {
     /// Share of the vote explained within `gate_m` (metres of the start), by the probes of `panel` alike.
     pub fn panel_share(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> f64 {
-        self.votes_of(panel, city_from_level, gate_m).sum::<f64>() / panel.len().max(1) as f64
+        let mut sum = 0.0;
+        self.each_vote(panel, city_from_level, gate_m, |_, vote| sum += vote);
+        sum / panel.len().max(1) as f64
     }
 
     /// That share less the cost of leaving what is known beforehand, so that where the data say nothing the start decides.
@@ -21,20 +23,36 @@ impl Scene<'_> {
         self.panel_share(panel, city_from_level, gate_m) - self.prior.cost(city_from_level)
     }
 
-    /// The vote of each probe of `panel`, 0 to 1.
-    pub fn panel_votes(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> Vec<f64> {
-        self.votes_of(panel, city_from_level, gate_m).collect()
+    /// The same score, or `None` as soon as it cannot reach `least`, though all probes that are left should vote.
+    pub fn score_from(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64, least: f64) -> Option<f64> {
+        let (count, cost) = (panel.len().max(1) as f64, self.prior.cost(city_from_level));
+        let (mut sum, mut left) = (0.0, panel.len());
+        for part in panel.chunks(BETWEEN_LOOKS) {
+            if (sum + left as f64) / count - cost < least {
+                return None;
+            }
+            self.each_vote(part, city_from_level, gate_m, |_, vote| sum += vote);
+            left -= part.len();
+        }
+        Some(sum / count - cost).filter(|score| *score >= least)
     }
 
-    fn votes_of(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> impl Iterator<Item = f64> {
-        let mover = Mover::new(city_from_level);
+    /// The vote of each probe of `panel`, 0 to 1.
+    pub fn panel_votes(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> Vec<f64> {
+        let mut votes = vec![0.0; panel.len()];
+        self.each_vote(panel, city_from_level, gate_m, |k, vote| votes[k] = vote);
+        votes
+    }
+
+    /// Tells `take` the vote of each probe of `panel` that has one.
+    fn each_vote(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64, mut take: impl FnMut(usize, f64)) {
         let gate_m = gate_m * city_from_level.scale;
-        panel.iter().map(move |&i| {
-            let hit = self.nearest(&mover.probe(&self.votes.probes[i as usize]), gate_m);
-            hit.map_or(0.0, |h| vote(h.distance_sq(), gate_m))
-        })
+        self.meet(panel, city_from_level, gate_m, |_| gate_m, |k, _, hit| take(k, vote(hit.distance_sq(), gate_m)));
     }
 }
+
+/// Probes between two looks at whether a score can still be reached.
+const BETWEEN_LOOKS: usize = 32;
 
 /// A similarity multiplied out for many points.
 pub struct Mover {
@@ -49,10 +67,18 @@ impl Mover {
         Mover { scaled: rotation * pose.scale, rotation, translation: pose.translation }
     }
 
-    #[inline]
     pub fn probe(&self, p: &Probe) -> Probe {
-        let position = Point3::from(self.scaled * p.position.coords + self.translation);
-        Probe { position, normal: self.rotation * p.normal, ..*p }
+        Probe { position: self.place(p), normal: self.direction(p), ..*p }
+    }
+
+    #[inline]
+    pub fn place(&self, p: &Probe) -> Point3<f64> {
+        Point3::from(self.scaled * p.position.coords + self.translation)
+    }
+
+    #[inline]
+    pub fn direction(&self, p: &Probe) -> Vector3<f64> {
+        self.rotation * p.normal
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use bvh::aabb::{Aabb, Bounded, IntersectsAabb};
 use bvh::bounding_hierarchy::{BHShape, BoundingHierarchy};
-use bvh::bvh::Bvh;
+use bvh::bvh::{Bvh, BvhNode};
 use nalgebra::{Point3, Vector3};
 
 /// Triangles in a tree of boxes.
@@ -55,19 +55,13 @@ impl RayCaster {
         direction: &Vector3<f64>,
         reach: f64,
     ) -> Option<Sight> {
+        // The tree cannot be walked without any triangle.
         if self.shapes.is_empty() {
             return None;
         }
-        let line = Line { from: *from, inverse: direction.map(f64::recip), reach };
-        let mut best: Option<Sight> = None;
-        for shape in self.tree.traverse_iterator(&line, &self.shapes) {
-            let Some(distance) = shape.meets(from, direction) else { continue };
-            let nearer = best.is_none_or(|b| (distance, shape.triangle) < (b.distance, b.triangle));
-            if distance <= reach && nearer && counts(shape.triangle) {
-                best = Some(Sight { distance, triangle: shape.triangle });
-            }
-        }
-        best
+        let mut search = First { caster: self, counts, line: Line::new(from, direction, reach), direction, best: None };
+        search.visit(0);
+        search.best
     }
 
     /// Shows `see` the triangles beyond `near` on the ray without end, in no order that means anything: one call for each
@@ -83,7 +77,7 @@ impl RayCaster {
         if self.shapes.is_empty() {
             return;
         }
-        let line = Line { from: *from, inverse: direction.map(f64::recip), reach: f64::INFINITY };
+        let line = Line::new(from, direction, f64::INFINITY);
         let sight = |shape: &Shape| {
             let distance = shape.meets(from, direction).filter(|&distance| distance > near)?;
             Some(Sight { distance, triangle: shape.triangle })
@@ -110,6 +104,53 @@ impl Shape {
     }
 }
 
+/// A walk through the tree to the first hit, the nearer boxes first.
+struct First<'a, F> {
+    caster: &'a RayCaster,
+    counts: F,
+    /// Ends where the best is.
+    line: Line,
+    direction: &'a Vector3<f64>,
+    best: Option<Sight>,
+}
+
+/// A box of an equally distant triangle may begin this share of the distance farther, by rounding.
+const BOX_ROUNDING: f64 = 1e-9;
+
+impl<F: Fn(u32) -> bool> First<'_, F> {
+    fn visit(&mut self, node: usize) {
+        match &self.caster.tree.nodes[node] {
+            BvhNode::Leaf { shape_index, .. } => self.look_at(&self.caster.shapes[*shape_index]),
+            BvhNode::Node { child_l_index, child_l_aabb, child_r_index, child_r_aabb, .. } => {
+                let left = self.line.enters(child_l_aabb).map(|at| (at, *child_l_index));
+                let right = self.line.enters(child_r_aabb).map(|at| (at, *child_r_index));
+                let (first, second) = match (left, right) {
+                    (Some(l), Some(r)) if r.0 < l.0 => (right, left),
+                    (None, _) => (right, None),
+                    _ => (left, right),
+                };
+                for (at, child) in [first, second].into_iter().flatten() {
+                    if at <= self.line.reach {
+                        self.visit(child);
+                    }
+                }
+            }
+        }
+    }
+
+    fn look_at(&mut self, shape: &Shape) {
+        let Some(distance) = shape.meets(&self.line.from, self.direction) else { return };
+        let nearer = match &self.best {
+            None => distance <= self.line.reach,
+            Some(best) => (distance, shape.triangle) < (best.distance, best.triangle),
+        };
+        if nearer && (self.counts)(shape.triangle) {
+            self.best = Some(Sight { distance, triangle: shape.triangle });
+            self.line.reach = self.line.reach.min(distance * (1.0 + BOX_ROUNDING));
+        }
+    }
+}
+
 /// A ray that ends.
 struct Line {
     from: Point3<f64>,
@@ -117,8 +158,14 @@ struct Line {
     reach: f64,
 }
 
-impl IntersectsAabb<f64, 3> for Line {
-    fn intersects_aabb(&self, aabb: &Aabb<f64, 3>) -> bool {
+impl Line {
+    fn new(from: &Point3<f64>, direction: &Vector3<f64>, reach: f64) -> Line {
+        Line { from: *from, inverse: direction.map(f64::recip), reach }
+    }
+
+    /// How far along the line a box begins.
+    #[inline]
+    fn enters(&self, aabb: &Aabb<f64, 3>) -> Option<f64> {
         let (mut enter, mut leave) = (0.0f64, self.reach);
         for k in 0..3 {
             let a = (aabb.min[k] - self.from[k]) * self.inverse[k];
@@ -127,7 +174,13 @@ impl IntersectsAabb<f64, 3> for Line {
             enter = enter.max(a.min(b));
             leave = leave.min(a.max(b));
         }
-        enter <= leave
+        (enter <= leave).then_some(enter)
+    }
+}
+
+impl IntersectsAabb<f64, 3> for Line {
+    fn intersects_aabb(&self, aabb: &Aabb<f64, 3>) -> bool {
+        self.enters(aabb).is_some()
     }
 }
 

@@ -2,16 +2,19 @@
 //!
 //! Question     which facet does a point with this normal lie on, and how far off is it?
 //! Method       a grid whose cells list the triangles that come within a reach of them and that somebody could have seen; a triangle
-//!              counts only where the point's normal agrees with its outward one. Cells are filled tile by tile when a point first falls into one
+//!              counts only where the point's normal agrees with its outward one. Cells are filled tile by tile when a point first falls into
+//!              one ([`Tile`])
 //! Why a grid   the search asks some ten million times for the nearest facet *of the same side and direction*; a tree of boxes
 //!              knows no normals and would walk through all of a street to find that nothing matches
 
 use std::sync::OnceLock;
 
 use super::city_planes::PlaneId;
+use super::directions::{Directions, Facing};
 use super::exposure::Exposure;
+use super::facet_tile::{Cell, List, TILE, Tile, TileSite};
 use super::surface::CitySurface;
-use crate::city::{CityModel, FacetId};
+use crate::city::CityModel;
 use crate::geometry::{Point3, Vector3};
 
 /// Where a point meets the city.
@@ -56,36 +59,16 @@ pub struct FacetGrid {
     starts: Vec<u32>,
     near: Vec<u32>,
     filled: Vec<OnceLock<Tile>>,
+    directions: Directions,
 }
 
-/// The cells of one tile.
-struct Tile {
-    triangles: Vec<GridTriangle>,
-    /// The triangles of cell `i` are `entries[starts[i]..starts[i + 1]]`, in rising order.
-    starts: Vec<u32>,
-    entries: Vec<u32>,
-}
-
-/// A triangle prepared for distance queries.
-#[derive(Clone, Copy, Debug)]
-struct GridTriangle {
-    /// Of the facet's plane, outward.
-    normal: Vector3<f64>,
-    offset: f64,
-    /// For each edge the in-plane unit normal that points out of the triangle, and its offset.
-    edges: [(Vector3<f64>, f64); 3],
-    plane: PlaneId,
-}
-
-/// Triangles smaller than this have no direction to speak of.
-const SMALLEST_TRIANGLE_M2: f64 = 1e-6;
-/// Cells along an edge of a tile.
-const TILE: usize = 16;
 /// Cells as wide as this share of the reach: half as wide lists are half as long, and filling them takes four times as long.
 const CELL_OF_REACH: f64 = 0.5;
 /// A grid has no more tiles than so many for each triangle of the city, and lists no triangle in more tiles than that on average: its memory
 /// goes by the model and not by its extent. Chosen: a triangle of a house lies in two to six.
 const TILES_OF_TRIANGLE: f64 = 16.0;
+/// Normals of patches agree with those of their facets within less than this.
+const SAME_DIRECTION_RAD: f64 = 0.45;
 /// Of small cities it has as many as of one of so many triangles.
 const LEAST_TRIANGLES: usize = 4096;
 
@@ -97,6 +80,49 @@ fn listed(city: &CityModel, reach_m: f64, tile_m: f64) -> f64 {
         extent.iter().map(|e| (e + 2.0 * reach_m) / tile_m + 1.0).product()
     };
     city.triangles.iter().map(tiles).sum()
+}
+
+/// A cell of a grid, to be looked into in steps: who looks into many takes each step for all of them, so that memory answers several at
+/// once.
+#[derive(Clone, Copy)]
+pub struct Look<'g> {
+    reach_m: f64,
+    tile: &'g Tile,
+    cell: Cell,
+    list: List,
+}
+
+impl Look<'_> {
+    /// The first step: which facets are listed.
+    #[inline]
+    pub fn find_list(&mut self) {
+        self.list = self.tile.list(self.cell);
+    }
+
+    /// The second: begins to fetch the list.
+    #[inline]
+    pub fn fetch_list(&self) {
+        self.tile.fetch_list(self.list);
+    }
+
+    /// Whether none is listed.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The third: begins to fetch the first triangles of the list.
+    #[inline]
+    pub fn fetch_triangles(&self) {
+        self.tile.fetch_triangles(self.list);
+    }
+
+    /// The last: the nearest triangle within `gate_m` whose outward normal agrees with the probe's, of which `facing` is told by the grid; of
+    /// equals the first of the model. A gate wider than the grid's reach is cut to it.
+    #[inline]
+    pub fn nearest(&self, probe: &Probe, facing: &Facing, gate_m: f64) -> Option<Hit> {
+        self.tile.nearest(self.list, probe, facing, gate_m.min(self.reach_m))
+    }
 }
 
 impl FacetGrid {
@@ -121,6 +147,7 @@ impl FacetGrid {
             starts: Vec::new(),
             near: Vec::new(),
             filled: (0..tiles.iter().product()).map(|_| OnceLock::new()).collect(),
+            directions: Directions::within(SAME_DIRECTION_RAD),
         };
         grid.sort_into_tiles(city, tile_m);
         grid
@@ -159,18 +186,10 @@ impl FacetGrid {
         (self.starts, self.near) = (starts, near);
     }
 
-    /// The nearest triangle within `gate_m` whose outward normal agrees with the probe's. A gate wider than the grid's reach is
-    /// cut to it.
+    /// Where to look near a place.
     #[inline]
-    pub(super) fn nearest(
-        &self,
-        probe: &Probe,
-        gate_m: f64,
-        surface: &CitySurface,
-        exposure: &Exposure,
-    ) -> Option<Hit> {
-        let p = &probe.position;
-        let d = (p - self.low) * self.cells_per_m;
+    pub(super) fn look(&self, place: &Point3<f64>, surface: &CitySurface, exposure: &Exposure) -> Option<Look<'_>> {
+        let d = (place - self.low) * self.cells_per_m;
         if !(d.x >= 0.0 && d.y >= 0.0 && d.z >= 0.0) {
             return None;
         }
@@ -181,121 +200,21 @@ impl FacetGrid {
         }
         let at = (tz * self.tiles[1] + ty) * self.tiles[0] + tx;
         let tile = self.filled[at].get_or_init(|| self.fill(at, surface, exposure));
-        let cell = ((z % TILE) * TILE + y % TILE) * TILE + x % TILE;
-        let list = tile.entries.get(tile.starts[cell] as usize..tile.starts[cell + 1] as usize)?;
-        let gate_m = gate_m.min(self.reach_m);
-        let (mut best, mut best_sq) = (None, gate_m * gate_m);
-        for &i in list {
-            let t = &tile.triangles[i as usize];
-            let cos = t.normal.dot(&probe.normal);
-            if (if probe.sided { cos } else { cos.abs() }) < probe.min_cos {
-                continue;
-            }
-            let across_m = t.normal.dot(&p.coords) + t.offset;
-            if across_m * across_m >= best_sq {
-                continue;
-            }
-            let outside_m = t.outside(p);
-            let distance_sq = across_m * across_m + outside_m * outside_m;
-            if distance_sq < best_sq {
-                best_sq = distance_sq;
-                best = Some((t, across_m, outside_m));
-            }
-        }
-        best.map(|(t, across_m, outside_m)| Hit { plane: t.plane, normal: t.normal, across_m, outside_m })
+        let cell = Cell::at([x % TILE, y % TILE, z % TILE]);
+        Some(Look { reach_m: self.reach_m, tile, cell, list: List::default() })
+    }
+
+    /// Which facets a point of a direction may lie on by theirs.
+    #[inline]
+    pub fn facing(&self, direction: &Vector3<f64>, min_cos: f64, sided: bool) -> Facing {
+        self.directions.facing(direction, min_cos, sided)
     }
 
     fn fill(&self, at: usize, surface: &CitySurface, exposure: &Exposure) -> Tile {
         let [x, y, z] = [at % self.tiles[0], at / self.tiles[0] % self.tiles[1], at / self.tiles[0] / self.tiles[1]];
         let low = self.low + Vector3::new(x as f64, y as f64, z as f64) * (self.cell_m * TILE as f64);
         let near = &self.near[self.starts[at] as usize..self.starts[at + 1] as usize];
-        let prepared = |&t: &u32| {
-            let corners = surface.corners(t);
-            let prepared = GridTriangle::new(&corners, surface, surface.facet_of(t))?;
-            exposure.of(t, surface).then_some((prepared, corners))
-        };
-        let triangles: Vec<(GridTriangle, [Point3<f64>; 3])> = near.iter().filter_map(prepared).collect();
-        let mut starts = vec![0u32; TILE * TILE * TILE + 1];
-        let mut found: Vec<(u32, u32)> = Vec::new();
-        for (i, (triangle, corners)) in triangles.iter().enumerate() {
-            self.each_cell(&low, triangle, corners, |cell| {
-                starts[cell + 1] += 1;
-                found.push((cell as u32, i as u32));
-            });
-        }
-        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
-        let mut entries = vec![0u32; found.len()];
-        let mut next = starts.clone();
-        for (cell, i) in found {
-            let place = &mut next[cell as usize];
-            entries[*place as usize] = i;
-            *place += 1;
-        }
-        Tile { triangles: triangles.into_iter().map(|(t, _)| t).collect(), starts, entries }
-    }
-
-    /// Calls `visit` with every cell of the tile at `low` that holds a place within reach of the triangle (and a few more at its
-    /// corners).
-    fn each_cell(
-        &self,
-        low: &Point3<f64>,
-        t: &GridTriangle,
-        [a, b, c]: &[Point3<f64>; 3],
-        mut visit: impl FnMut(usize),
-    ) {
-        let reach = Vector3::repeat(self.reach_m);
-        let (first, last) = (a.inf(b).inf(c) - reach - low.coords, a.sup(b).sup(c) + reach - low.coords);
-        let mut range = [(0usize, 0usize); 3];
-        for k in 0..3 {
-            let (first, last) = ((first[k] / self.cell_m).floor(), (last[k] / self.cell_m).floor());
-            if last < 0.0 || first >= TILE as f64 {
-                return;
-            }
-            range[k] = (first.max(0.0) as usize, (last as usize).min(TILE - 1));
-        }
-        let near = self.reach_m + self.cell_m * 0.5 * 3f64.sqrt();
-        for z in range[2].0..=range[2].1 {
-            for y in range[1].0..=range[1].1 {
-                for x in range[0].0..=range[0].1 {
-                    let center = low + self.cell_m * Vector3::new(x as f64 + 0.5, y as f64 + 0.5, z as f64 + 0.5);
-                    let across = t.normal.dot(&center.coords) + t.offset;
-                    if across.abs() <= near && t.outside(&center) <= near {
-                        visit((z * TILE + y) * TILE + x);
-                    }
-                }
-            }
-        }
-    }
-}
-
-impl GridTriangle {
-    fn new(corners: &[Point3<f64>; 3], surface: &CitySurface, facet: FacetId) -> Option<GridTriangle> {
-        let [a, b, c] = corners;
-        let across = (b - a).cross(&(c - a));
-        if across.norm() < 2.0 * SMALLEST_TRIANGLE_M2 {
-            return None;
-        }
-        let plane = &surface.model.facets[facet.0 as usize].plane;
-        // The triangulation may wind against the facet; edges point out of the triangle all the same.
-        let winding = if across.dot(&plane.normal) < 0.0 { -1.0 } else { 1.0 };
-        let edge = |from: &Point3<f64>, to: &Point3<f64>| {
-            let out = (to - from).cross(&plane.normal).normalize() * winding;
-            (out, -out.dot(&from.coords))
-        };
-        Some(GridTriangle {
-            normal: plane.normal,
-            offset: plane.offset,
-            edges: [edge(a, b), edge(b, c), edge(c, a)],
-            plane: surface.planes().of_facet(facet),
-        })
-    }
-
-    /// How far a point's foot lies outside: exact beside an edge, a little too small beyond a sharp corner.
-    #[inline]
-    fn outside(&self, p: &Point3<f64>) -> f64 {
-        let [a, b, c] = &self.edges;
-        let (a, b, c) = (a.0.dot(&p.coords) + a.1, b.0.dot(&p.coords) + b.1, c.0.dot(&p.coords) + c.1);
-        a.max(b).max(c).max(0.0)
+        Tile::new(&TileSite { low, cell_m: self.cell_m, reach_m: self.reach_m }, near, surface, exposure)
     }
 }
 
@@ -354,29 +273,6 @@ mod tests {
         assert!(city.nearest(&grid, &probe(0.2, 5.0, 7.2, 1.0), 1.0).is_none());
         assert!(city.nearest(&grid, &probe(f64::NAN, 5.0, 3.0, 1.0), 1.0).is_none());
         assert!(city.nearest(&grid, &probe(1e9, 5.0, 3.0, 1.0), 1.0).is_none());
-    }
-
-    #[test]
-    fn agrees_with_looking_at_every_triangle() {
-        let city = prepared();
-        let grid = city.grid(1.5);
-        let triangles: Vec<GridTriangle> = (0..city.model.triangles.len() as u32)
-            .map(|t| GridTriangle::new(&city.corners(t), &city, city.facet_of(t)).unwrap())
-            .collect();
-        for i in 0..500 {
-            let part = |k: u64| ((i as u64 * 2_654_435_761 + k * 40_503) % 1000) as f64 / 1000.0;
-            let p = probe(2.0 * part(1) - 1.0, 14.0 * part(2) - 2.0, 10.0 * part(3) - 2.0, 1.0);
-            let slow = triangles
-                .iter()
-                .filter(|t| t.normal.x > 0.0)
-                .map(|t| (t.normal.dot(&p.position.coords) + t.offset).hypot(t.outside(&p.position)))
-                .fold(f64::INFINITY, f64::min);
-            let fast = city.nearest(&grid, &p, 1.5).map(|h| h.distance_sq().sqrt());
-            match fast {
-                Some(d) => assert!((d - slow).abs() < 1e-12),
-                None => assert!(slow >= 1.5),
-            }
-        }
     }
 
     #[test]

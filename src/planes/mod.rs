@@ -2,8 +2,10 @@
 
 mod city_planes;
 mod cloud;
+mod directions;
 mod exposure;
 mod facet_grid;
+mod facet_tile;
 mod fit;
 mod patches;
 mod prepared_city;
@@ -13,7 +15,8 @@ mod upright;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
 pub use cloud::{LocalSurface, local_surfaces};
-pub use facet_grid::{FacetGrid, Hit, Probe};
+pub use directions::Facing;
+pub use facet_grid::{FacetGrid, Hit, Look, Probe};
 pub use fit::{FittedPlane, fit_plane, fit_plane_robustly};
 pub use patches::{Patch, Patches, RejectedGroup, patches};
 pub use prepared_city::PreparedCity;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::city_planes::PlaneId;
 use super::exposure::Exposure;
-use super::facet_grid::{FacetGrid, Hit, Probe};
+use super::facet_grid::{FacetGrid, Hit, Look, Probe};
 use super::surface::CitySurface;
 use crate::city::{CityModel, FacetId};
 use crate::geometry::Point3;
@@ -62,7 +62,16 @@ impl PreparedCity {
     /// The facet that a probe lies on, by a grid of this city.
     #[inline]
     pub fn nearest(&self, grid: &FacetGrid, probe: &Probe, gate_m: f64) -> Option<Hit> {
-        grid.nearest(probe, gate_m, &self.surface, &self.exposure)
+        let facing = grid.facing(&probe.normal, probe.min_cos, probe.sided);
+        let mut look = self.look(grid, &probe.position)?;
+        look.find_list();
+        look.nearest(probe, &facing, gate_m)
+    }
+
+    /// Where to look in a grid of this city; `None` beyond it.
+    #[inline]
+    pub fn look<'g>(&self, grid: &'g FacetGrid, place: &Point3<f64>) -> Option<Look<'g>> {
+        grid.look(place, &self.surface, &self.exposure)
     }
 
     /// The grid of facets that answers within `reach_m`.

@@ -73,7 +73,7 @@ impl UpVotes {
 
     /// Share of the voters for `up`, 0 to 1.
     pub fn share(&self, up: &Vector3<f64>) -> f64 {
-        self.asked(up).fold(0.0, |sum, (asks, weight, _)| sum + weight * self.kernel(&asks.misfit(up)))
+        self.asked(up).fold(0.0, |sum, (asks, weight, _)| sum + weight * self.kernel(asks.misfit_sq(up)))
     }
 
     /// The quadratic form of up, 1 / rad^2, that the voters for an up near this one make small.
@@ -83,10 +83,10 @@ impl UpVotes {
         // The variance of a voter of average weight.
         let (mut votes, mut squares) = (self.limits.votes_of_kernel, self.limits.votes_of_kernel * kernel_sq);
         for (asks, weight, _) in self.asked(up) {
-            let misfit = asks.misfit(up);
-            let believed = self.kernel(&misfit) * weight / even;
+            let misfit_sq = asks.misfit_sq(up);
+            let believed = self.kernel(misfit_sq) * weight / even;
             votes += believed;
-            squares += believed * misfit.norm_squared();
+            squares += believed * misfit_sq;
         }
         let variance = squares / votes;
         self.asked(up).fold(Matrix3::zeros(), |sum, (asks, weight, fellows)| {
@@ -95,7 +95,7 @@ impl UpVotes {
                 Asks::Along(_) => self.habits.shared_along_rad,
             };
             let of_one = variance * even / weight + fellows * shared * shared;
-            sum + asks.form() * (self.kernel(&asks.misfit(up)) / of_one)
+            sum + asks.form() * (self.kernel(asks.misfit_sq(up)) / of_one)
         })
     }
 
@@ -107,8 +107,9 @@ impl UpVotes {
         })
     }
 
-    fn kernel(&self, misfit: &Vector3<f64>) -> f64 {
-        (1.0 + misfit.norm_squared() / self.habits.kernel_rad.powi(2)).powi(-2)
+    fn kernel(&self, misfit_sq: f64) -> f64 {
+        let root = 1.0 / (1.0 + misfit_sq / (self.habits.kernel_rad * self.habits.kernel_rad));
+        root * root
     }
 }
 
@@ -144,11 +145,11 @@ impl Voter {
 }
 
 impl Asks {
-    /// The part of up that should not be there.
-    fn misfit(&self, up: &Vector3<f64>) -> Vector3<f64> {
+    /// The square of the part of up (unit) that should not be there.
+    fn misfit_sq(&self, up: &Vector3<f64>) -> f64 {
         match self {
-            Asks::Across(a) => a * a.dot(up),
-            Asks::Along(a) => up - a * a.dot(up),
+            Asks::Across(a) => a.dot(up) * a.dot(up),
+            Asks::Along(a) => (up - a * a.dot(up)).norm_squared(),
         }
     }
 

@@ -21,6 +21,11 @@ pub trait Problem: Sync {
     /// How well a pose explains the data; greater is better.
     fn score(&self, pose: &Self::Pose) -> f64;
 
+    /// The score, if it is `least` or more: what is less may be given up as soon as that is known.
+    fn score_from(&self, pose: &Self::Pose, least: f64) -> Option<f64> {
+        Some(self.score(pose)).filter(|score| *score >= least)
+    }
+
     /// True where two poses are one place of the search, for which one attempt at improvement is enough.
     fn same(&self, a: &Self::Pose, b: &Self::Pose) -> bool;
 }
@@ -64,8 +69,10 @@ pub fn ransac<P: Problem>(
     let mut samples = 0;
     let mut block = 0u64;
     while samples < options.most_samples {
+        // What counts rises with every pose that is kept: a score below this changes nothing in this round.
+        let least = least_that_counts(&kept, options.keep);
         let found: Vec<Vec<(f64, P::Pose)>> =
-            (0..ROUND as u64).into_par_iter().map(|b| block_of_samples(problem, options, block + b)).collect();
+            (0..ROUND as u64).into_par_iter().map(|b| block_of_samples(problem, options, block + b, least)).collect();
         block += ROUND as u64;
         samples += ROUND * BLOCK;
         for (score, pose) in found.into_iter().flatten() {
@@ -79,14 +86,22 @@ pub fn ransac<P: Problem>(
     (kept, samples)
 }
 
-fn block_of_samples<P: Problem>(problem: &P, options: &RansacOptions, block: u64) -> Vec<(f64, P::Pose)> {
+/// The score below which a pose neither is kept nor confirms one that is.
+fn least_that_counts<P>(kept: &[Ranked<P>], keep: usize) -> f64 {
+    match kept.last() {
+        Some(last) if kept.len() == keep => HIT_SHARE * last.score.min(1e300),
+        _ => f64::NEG_INFINITY,
+    }
+}
+
+fn block_of_samples<P: Problem>(problem: &P, options: &RansacOptions, block: u64, least: f64) -> Vec<(f64, P::Pose)> {
     let mut random = Random::stream(options.seed, block);
     let mut poses = Vec::new();
     let mut scored = Vec::new();
     for _ in 0..BLOCK {
         poses.clear();
         problem.hypothesize(&mut random, &mut poses);
-        scored.extend(poses.drain(..).map(|pose| (problem.score(&pose), pose)));
+        scored.extend(poses.drain(..).filter_map(|pose| Some((problem.score_from(&pose, least)?, pose))));
     }
     scored.retain(|(score, _)| score.is_finite());
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -97,7 +112,7 @@ fn block_of_samples<P: Problem>(problem: &P, options: &RansacOptions, block: u64
 
 /// Puts a pose in its place by score, unless it is one of those that are there.
 fn insert<P: Problem>(problem: &P, kept: &mut Vec<Ranked<P::Pose>>, keep: usize, pose: P::Pose, score: f64) {
-    if kept.len() == keep && kept.last().is_some_and(|last| score < HIT_SHARE * last.score.min(1e300)) {
+    if score < least_that_counts(kept, keep) {
         return;
     }
     let mut hits = 1;
@@ -131,7 +146,7 @@ mod tests {
         }
 
         fn score(&self, pose: &i64) -> f64 {
-            -((pose - 500).abs() as f64)
+            1000.0 - (pose - 500).abs() as f64
         }
 
         fn same(&self, a: &i64, b: &i64) -> bool {
@@ -148,6 +163,35 @@ mod tests {
         assert!(samples >= 20_000 && found[0].pose == 500);
         assert!(found.windows(2).all(|w| w[0].score >= w[1].score));
         assert!(found.iter().skip(1).all(|k| (k.pose - 500).abs() >= 5));
+    }
+
+    /// A guess whose score is told in full, whatever counts.
+    struct Patient;
+
+    impl Problem for Patient {
+        type Pose = i64;
+
+        fn hypothesize(&self, random: &mut Random, poses: &mut Vec<i64>) {
+            Guess.hypothesize(random, poses);
+        }
+
+        fn score(&self, pose: &i64) -> f64 {
+            Guess.score(pose)
+        }
+
+        fn score_from(&self, pose: &i64, _: f64) -> Option<f64> {
+            Some(self.score(pose))
+        }
+
+        fn same(&self, a: &i64, b: &i64) -> bool {
+            Guess.same(a, b)
+        }
+    }
+
+    #[test]
+    fn scores_that_are_given_up_early_change_nothing() {
+        let told = |found: Vec<Ranked<i64>>| found.iter().map(|k| (k.pose, k.score, k.hits)).collect::<Vec<_>>();
+        assert_eq!(told(ransac(&Guess, &OPTIONS, |_| ()).0), told(ransac(&Patient, &OPTIONS, |_| ()).0));
     }
 
     #[test]

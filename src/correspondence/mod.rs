@@ -29,7 +29,6 @@ pub use prior::Prior;
 pub use refine::{ProbeOnPlane, Refined, Refiner};
 pub use sampler::{Pair, Sample, Sampler};
 pub use scene::Scene;
-pub use scoring::Mover;
 pub use search::{Hypotheses, NO_SOLVER, search};
 pub use votes::{LevelPatch, Votes};
 pub use walk::{hop, settle, slide};

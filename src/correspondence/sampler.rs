@@ -67,6 +67,15 @@ pub struct Sampler<'a> {
     kept: AtomicUsize,
 }
 
+/// What a sample goes on with.
+enum Telling {
+    Pair(Drawn<Pair>),
+    /// No patch drawn would say anything new.
+    AllIsKnown,
+    /// None of the patches drawn can lie anywhere.
+    NothingFits,
+}
+
 /// All that a patch may lie on.
 #[derive(Default)]
 struct Offers {
@@ -129,9 +138,11 @@ impl<'a> Sampler<'a> {
             Motion::Similarity => 4,
         };
         while draft.pairs.len() < unknowns {
-            let Some(patch) = self.least_known(&draft.belief, random) else { break };
-            let pair = self.next_pair(patch, &draft.belief, random)?;
-            draft.take(self.votes, pair);
+            match self.telling_pair(&draft.belief, random) {
+                Telling::Pair(pair) => draft.take(self.votes, pair),
+                Telling::AllIsKnown => break,
+                Telling::NothingFits => return None,
+            }
         }
         let (completion, chance) = draft.belief.completion(unknowns.saturating_sub(draft.pairs.len()), random)?;
         // Planes beyond those hold the rotation.
@@ -148,7 +159,7 @@ impl<'a> Sampler<'a> {
 
     /// Known up: one pair, and the heading that turns its patch into its plane.
     fn begin_level(&self, random: &mut Random) -> Option<Draft> {
-        let pair = self.first_pair(random.weighted(&self.turned)?, random)?;
+        let pair = (0..self.limits.most_draws).find_map(|_| self.first_pair(random.weighted(&self.turned)?, random))?;
         let mut draft = Draft::new(self.belief(about_up_from(&pair.what.normal, &pair.what.target.normal)));
         draft.take(self.votes, pair);
         Some(draft)
@@ -167,6 +178,17 @@ impl<'a> Sampler<'a> {
         draft.take(self.votes, pair);
         draft.take(self.votes, Drawn { what: other, chance });
         Some(draft)
+    }
+
+    /// A pair of which the belief says little. A patch that can lie nowhere is not on the city, and another takes its turn.
+    fn telling_pair(&self, belief: &Belief, random: &mut Random) -> Telling {
+        for _ in 0..self.limits.most_draws {
+            let Some(patch) = self.least_known(belief, random) else { return Telling::AllIsKnown };
+            if let Some(pair) = self.next_pair(patch, belief, random) {
+                return Telling::Pair(pair);
+            }
+        }
+        Telling::NothingFits
     }
 
     fn belief(&self, rotation: Matrix3<f64>) -> Belief {

@@ -1,7 +1,7 @@
 //! What the witnesses meet in the city under a pose.
 
 use super::witnesses::{Piece, Witnesses};
-use crate::correspondence::{Mover, Scene};
+use crate::correspondence::Scene;
 use crate::geometry::Similarity;
 use crate::limits::EvidenceLimits;
 
@@ -18,24 +18,21 @@ pub type Outcomes = Vec<[f64; KINDS]>;
 
 /// What each piece meets under a pose.
 pub fn outcomes(scene: &Scene, witnesses: &Witnesses, pose: &Similarity, limits: &EvidenceLimits) -> Outcomes {
-    let mover = Mover::new(pose);
     let tolerance_m = pose.scale * limits.tolerance_m.max(limits.tolerance_sigmas * scene.votes.noise_m);
     let blocked = scene.blocked(&witnesses.lines, pose);
+    let mut off = vec![f64::INFINITY; witnesses.probes.len()];
+    scene.meet(&witnesses.probes, pose, tolerance_m, |_| tolerance_m, |k, _, hit| off[k] = hit.distance_sq().sqrt());
     let of_piece = |piece: &Piece| {
         let mut shares = [0.0; KINDS];
         let lines = &blocked[piece.lines.clone()];
         shares[BLOCKED] = lines.iter().filter(|b| **b).count() as f64 / lines.len().max(1) as f64;
-        let mut distances: Vec<f64> = witnesses.probes[piece.probes.clone()]
-            .iter()
-            .filter_map(|&i| scene.nearest(&mover.probe(&scene.votes.probes[i as usize]), tolerance_m))
-            .map(|hit| hit.distance_sq().sqrt() / tolerance_m)
-            .collect();
-        let on_city = distances.len() as f64 / piece.probes.len().max(1) as f64;
+        let mut on_city: Vec<f64> = off[piece.probes.clone()].iter().copied().filter(|m| m.is_finite()).collect();
+        let share = on_city.len() as f64 / piece.probes.len().max(1) as f64;
         // The points of a piece share its offset: their median tells it, the scatter about it does not.
-        distances.sort_by(f64::total_cmp);
-        let kind = distances.get(distances.len() / 2).map_or(MISSED, |d| band(*d));
-        shares[kind] += (1.0 - shares[BLOCKED]) * on_city;
-        shares[MISSED] += (1.0 - shares[BLOCKED]) * (1.0 - on_city);
+        on_city.sort_by(f64::total_cmp);
+        let kind = on_city.get(on_city.len() / 2).map_or(MISSED, |m| band(m / tolerance_m));
+        shares[kind] += (1.0 - shares[BLOCKED]) * share;
+        shares[MISSED] += (1.0 - shares[BLOCKED]) * (1.0 - share);
         shares
     };
     witnesses.pieces.iter().map(of_piece).collect()

@@ -38,6 +38,7 @@ impl Scene<'_> {
     }
 
     /// The vote of each probe of `panel`, 0 to 1.
+    #[cfg(test)]
     pub fn panel_votes(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> Vec<f64> {
         let mut votes = vec![0.0; panel.len()];
         self.each_vote(panel, city_from_level, gate_m, |k, vote| votes[k] = vote);

@@ -55,6 +55,9 @@ impl<'a> Contest<'a> {
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let by_chance = ranked.iter().map(|(bits, _)| *bits).collect();
         let mut contest = Contest { scene, witnesses, chance, others: Vec::new(), by_chance };
+        // Refinement to the end gains some bits: who is twice the margin behind cannot become a rival.
+        let least = contest.weigh(&answer.city_from_level).bits - 2.0 * limits.verdict.margin_bits();
+        ranked.retain(|(bits, _)| *bits >= least);
         contest.others = contest.sharpened(&refiner, &ranked, &place);
         contest
     }

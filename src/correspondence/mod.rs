@@ -16,7 +16,7 @@ mod search;
 mod sight;
 mod targets;
 #[cfg(test)]
-mod test_scene;
+pub(crate) mod test_scene;
 mod votes;
 mod walk;
 

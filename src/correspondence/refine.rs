@@ -142,7 +142,9 @@ impl<'a> Refiner<'a> {
         let mut plane = NormalEquations::default();
         let mut count = 0.0;
         for row in rows {
-            plane.add(&chart.row(&row.place, &row.hit.normal), row.hit.across_m, row.weight);
+            // At the foot on the facet: a smaller scale must not seem to make the noise across it smaller.
+            let foot = row.place - row.hit.normal * row.hit.across_m;
+            plane.add(&chart.row(&foot, &row.hit.normal), row.hit.across_m, row.weight);
             count += row.weight;
         }
         let variance = self.point_sigma_m.powi(2) + count * self.scene.limits.plane_sigma_m.powi(2);

@@ -15,7 +15,7 @@ use super::bending::Bending;
 use super::elimination::{Eliminated, eliminate, inverse};
 use super::findings::Findings;
 use super::leave_out;
-use super::sample::{Sample, sample};
+use super::sample::{KINDS, Sample, sample};
 use crate::correspondence::Refiner;
 use crate::geometry::{Point3, Similarity};
 use crate::limits::UncertaintyLimits;
@@ -47,40 +47,43 @@ const OF_FRONT: usize = 3;
 /// Standard deviations, squared, m^2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spreads {
-    pub building: f64,
-    pub front: f64,
+    /// By kind.
+    pub building: [f64; KINDS],
+    pub front: [f64; KINDS],
     pub piece: f64,
     /// Of the bending as a whole.
     pub bending: f64,
 }
 
 /// The estimate near a pose.
+///
+/// The pose is taken from what lies close to the city, where the right half of a model outvotes the wrong one; how exactly it is known from
+/// all that lies about it, where what the model has wrong is seen.
 pub fn estimate(refiner: &Refiner, pose: &Similarity) -> Estimate {
     let scene = refiner.scene;
     let limits = &scene.limits.uncertainty;
-    let gate_m = limits.gate_units * scene.unit_m;
     let mut pose = *pose;
-    let mut spreads = None;
-    let mut round = 0;
-    loop {
+    for _ in 0..limits.rounds {
         let chart = refiner.assess(&[], &pose, 0.0).chart;
-        let sample = sample(refiner, &pose, gate_m);
-        let places: Vec<Point3<f64>> = scene.votes.probes.iter().map(|probe| pose.apply(&probe.position)).collect();
-        let start = scene.prior.information(&chart);
-        let mut system = System::new(&sample, &chart, &places, &start, limits, spreads);
-        system.settle(limits.steps);
-        let held = system.held();
-        let moved = chart.moved(&pose, &chart.step(&held, scene.limits.refinement.held_m));
-        round += 1;
-        if round == limits.rounds || !moved.translation.iter().all(|v| v.is_finite()) {
-            let left_out = leave_out::by_building(&system);
-            let information = left_out.widened(&held.full());
-            let without = leave_out::by_front(&system).iter().map(|m| left_out.widened(m)).collect();
-            let findings = Findings::of(&system);
-            return Estimate { city_from_level: pose, chart, information, without, findings };
+        let sample = sample(refiner, &pose, limits.pose_gate_units * scene.unit_m);
+        let system = System::settled(refiner, &pose, &chart, &sample);
+        let moved = chart.moved(&pose, &chart.step(&system.held(), scene.limits.refinement.held_m));
+        if !moved.translation.iter().all(|v| v.is_finite()) || !scene.prior.reaches(&moved) {
+            break;
         }
         pose = moved;
-        spreads = Some(system.spreads);
+    }
+    let chart = refiner.assess(&[], &pose, 0.0).chart;
+    let sample = sample(refiner, &pose, limits.gate_units * scene.unit_m);
+    let mut system = System::settled(refiner, &pose, &chart, &sample);
+    system.take_tails_in();
+    let left_out = leave_out::by_building(&system);
+    Estimate {
+        city_from_level: pose,
+        chart,
+        information: left_out.widened(&system.held().full()),
+        without: leave_out::by_front(&system).iter().map(|m| left_out.widened(m)).collect(),
+        findings: Findings::of(&system),
     }
 }
 
@@ -121,7 +124,6 @@ impl<'a> System<'a> {
         places: &[Point3<f64>],
         start: &Matrix7,
         limits: &'a UncertaintyLimits,
-        spreads: Option<Spreads>,
     ) -> System<'a> {
         let bending = Bending::over(places, chart);
         let common = COMMON + bending.count();
@@ -129,8 +131,8 @@ impl<'a> System<'a> {
         known.view_mut((0, 0), (POSE, POSE)).copy_from(start);
         let of_spread = |sigma: f64| sigma * sigma;
         let first = Spreads {
-            building: of_spread(limits.building_sigma_m),
-            front: of_spread(limits.front_sigma_m),
+            building: [of_spread(limits.building_sigma_m); KINDS],
+            front: [of_spread(limits.front_sigma_m); KINDS],
             piece: of_spread(limits.piece_sigma_m),
             bending: of_spread(limits.bending_share * chart.radius),
         };
@@ -141,7 +143,7 @@ impl<'a> System<'a> {
             rows: rows(sample, chart, &bending, common),
             common,
             start: known,
-            spreads: spreads.unwrap_or(first),
+            spreads: first,
             building_weights: vec![1.0; sample.buildings.len()],
             front_weights: vec![1.0; sample.fronts.len()],
             piece_weights: vec![1.0; sample.pieces.len()],
@@ -151,12 +153,27 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Estimates unknowns and spreads in turn.
-    fn settle(&mut self, steps: usize) {
-        for _ in 0..steps {
-            self.solve();
-            self.learn();
+    /// With unknowns and spreads estimated in turn.
+    fn settled(refiner: &Refiner<'a>, pose: &Similarity, chart: &Chart, sample: &'a Sample) -> System<'a> {
+        let scene = refiner.scene;
+        let places: Vec<Point3<f64>> = scene.votes.probes.iter().map(|probe| pose.apply(&probe.position)).collect();
+        let mut system =
+            System::new(sample, chart, &places, &scene.prior.information(chart), &scene.limits.uncertainty);
+        for _ in 0..system.limits.steps {
+            system.solve();
+            system.learn();
         }
+        system.solve();
+        system
+    }
+
+    /// Takes for a spread what Student's t scatters by, its tails included: more than its core by nu / (nu - 2).
+    fn take_tails_in(&mut self) {
+        let tails = self.limits.tails;
+        let times = tails / (tails - 2.0);
+        let Spreads { building, front, piece, bending } = self.spreads;
+        let wider = |spread: f64| spread * times;
+        self.spreads = Spreads { building: building.map(wider), front: front.map(wider), piece: wider(piece), bending };
         self.solve();
     }
 
@@ -175,12 +192,13 @@ impl<'a> System<'a> {
             .fronts
             .clone()
             .map(|front| {
-                eliminate(&self.equations_of_front(front), keep, self.front_weights[front] / self.spreads.front)
+                let precision = self.front_weights[front] / self.spreads.front[self.sample.fronts[front].kind as usize];
+                eliminate(&self.equations_of_front(front), keep, precision)
             })
             .collect();
         let mut whole = DMatrix::zeros(keep, keep);
         fronts.iter().for_each(|front| whole += &front.rest);
-        let precision = self.building_weights[building] / self.spreads.building;
+        let precision = self.building_weights[building] / self.spreads.building[of_building.kind as usize];
         let building = eliminate(&whole, self.common + 1, precision);
         Part { whole, building, fronts, precision }
     }
@@ -239,42 +257,40 @@ impl<'a> System<'a> {
 
     /// Spreads and weights by what the unknowns turn out to be, and by how well these are known.
     fn learn(&mut self) {
-        let limits = self.limits;
-        let (mut of_buildings, mut of_fronts, mut of_pieces) = (0.0, 0.0, 0.0);
-        for b in 0..self.parts.len() {
+        let (limits, sample) = (self.limits, self.sample);
+        let of_kind = |count: usize, first_m: f64, worth: f64| Squares {
+            sum: worth * first_m * first_m,
+            count: worth,
+            each: count as f64,
+        };
+        let mut of_buildings = [of_kind(OF_BUILDING, limits.building_sigma_m, limits.building_worth); KINDS];
+        let mut of_fronts = [of_kind(OF_FRONT, limits.front_sigma_m, limits.front_worth); KINDS];
+        let mut of_pieces = of_kind(1, limits.piece_sigma_m, limits.piece_worth);
+        for (b, of_building) in sample.buildings.iter().enumerate() {
             let (building, covariance, squared) = self.building_found(b);
-            self.building_weights[b] = weight(squared / self.spreads.building, OF_BUILDING, limits.tails);
-            of_buildings += self.building_weights[b] * squared;
-            for (k, front) in self.sample.buildings[b].fronts.clone().enumerate() {
+            let kind = of_building.kind as usize;
+            self.building_weights[b] = weight(squared / self.spreads.building[kind], OF_BUILDING, limits.tails);
+            of_buildings[kind].add(self.building_weights[b] * squared);
+            for (k, front) in of_building.fronts.clone().enumerate() {
                 let (offsets, squared) = self.front_found(b, k, &building, &covariance);
-                self.front_weights[front] = weight(squared / self.spreads.front, OF_FRONT, limits.tails);
-                of_fronts += self.front_weights[front] * squared;
-                for piece in self.sample.fronts[front].pieces.clone() {
-                    of_pieces += self.learn_piece(piece, &building, &offsets);
+                let kind = sample.fronts[front].kind as usize;
+                self.front_weights[front] = weight(squared / self.spreads.front[kind], OF_FRONT, limits.tails);
+                of_fronts[kind].add(self.front_weights[front] * squared);
+                for piece in sample.fronts[front].pieces.clone() {
+                    let squared = self.learn_piece(piece, &building, &offsets);
+                    of_pieces.add(squared);
                 }
             }
         }
         let fields = self.common - COMMON;
-        let bends: f64 = (COMMON..self.common).map(|k| self.found[k].powi(2) + self.covariance[(k, k)]).sum();
-        let mean = |squares: f64, count: usize, first_m: f64, worth: f64| {
-            (worth * first_m * first_m + squares) / (worth + count as f64)
-        };
-        let sample = self.sample;
+        let mut of_bending =
+            of_kind(1, limits.bending_share * self.radius_m / (fields.max(1) as f64).sqrt(), limits.bending_worth);
+        (COMMON..self.common).for_each(|k| of_bending.add(self.found[k].powi(2) + self.covariance[(k, k)]));
         self.spreads = Spreads {
-            building: mean(
-                of_buildings,
-                OF_BUILDING * sample.buildings.len(),
-                limits.building_sigma_m,
-                limits.building_worth,
-            ),
-            front: mean(of_fronts, OF_FRONT * sample.fronts.len(), limits.front_sigma_m, limits.front_worth),
-            piece: mean(of_pieces, sample.pieces.len(), limits.piece_sigma_m, limits.piece_worth),
-            bending: if fields == 0 {
-                self.spreads.bending
-            } else {
-                let first_m = limits.bending_share * self.radius_m / (fields as f64).sqrt();
-                mean(bends, fields, first_m, limits.bending_worth) * fields as f64
-            },
+            building: of_buildings.map(|squares| squares.mean()),
+            front: of_fronts.map(|squares| squares.mean()),
+            piece: of_pieces.mean(),
+            bending: of_bending.mean() * fields.max(1) as f64,
         };
     }
 
@@ -325,6 +341,26 @@ impl<'a> System<'a> {
     }
 }
 
+/// A mean of squares that begins with what is known beforehand.
+#[derive(Clone, Copy)]
+struct Squares {
+    sum: f64,
+    count: f64,
+    /// How many squares are added at a time.
+    each: f64,
+}
+
+impl Squares {
+    fn add(&mut self, squares: f64) {
+        self.sum += squares;
+        self.count += self.each;
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count
+    }
+}
+
 /// Weight of an unknown of so many parts whose square is so many times its variance, by Student's t.
 fn weight(squared: f64, parts: usize, tails: f64) -> f64 {
     (tails + parts as f64) / (tails + squared)
@@ -341,7 +377,7 @@ fn rows(sample: &Sample, chart: &Chart, bending: &Bending, common: usize) -> DMa
                     row[POSE - 1] = 0.0;
                 }
                 row[WALLS] = f64::from(u8::from(front.is_wall));
-                row[LIDS] = f64::from(u8::from(front.is_lid));
+                row[LIDS] = f64::from(u8::from(front.is_top));
                 let bends = bending.at(&piece.foot, chart);
                 bends.iter().enumerate().for_each(|(b, bend)| row[COMMON + b] = bend.dot(&piece.normal));
                 row[common] = piece.across_m;
@@ -357,4 +393,193 @@ fn rows(sample: &Sample, chart: &Chart, bending: &Bending, common: usize) -> DMa
         }
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correspondence::Scene;
+    use crate::correspondence::test_scene::Made;
+    use crate::geometry::Vector3;
+    use crate::synthetic::{Block, CloudOptions, House, Offset};
+
+    fn seen() -> CloudOptions {
+        CloudOptions { points_per_roof: 100, outlier_share: 0.0, seed: 5, ..CloudOptions::default() }
+    }
+
+    fn town() -> Block {
+        Block::town(2, 2, 3).with_ground(true)
+    }
+
+    fn found(made: &Made) -> (Estimate, Scene<'_>) {
+        let scene = made.scene(&Offset::default(), Motion::Similarity);
+        let estimate = estimate(&Refiner::new(&scene), &made.truth(&scene));
+        (estimate, scene)
+    }
+
+    /// One sigma of the whole pose, metres.
+    fn sigma_m(estimate: &Estimate) -> f64 {
+        estimate.information.try_inverse().unwrap().trace().sqrt()
+    }
+
+    /// The city has its houses changed, the survey saw them as they were.
+    fn with_other_model(block: &Block, change: impl Fn(usize, &mut House)) -> Made {
+        let survey = block.cloud(&seen());
+        let mut known = block.clone();
+        known.houses.iter_mut().enumerate().for_each(|(k, house)| change(k, house));
+        Made::new(known, survey)
+    }
+
+    fn shifted(house: &mut House, by: [f64; 3]) {
+        *house = house.clone().at(by);
+    }
+
+    #[test]
+    fn an_exact_model_gives_a_pose_to_centimetres_and_says_so() {
+        let made = Made::cloud(town(), &seen());
+        let (estimate, scene) = found(&made);
+        let error = made.error(&scene, &estimate.city_from_level);
+        assert!(error.level_m < 0.02 && error.up_m < 0.02, "{error:?}");
+        assert!(sigma_m(&estimate) < 0.15, "{}", sigma_m(&estimate));
+        assert!(estimate.findings.buildings_m < 0.06, "{:?}", estimate.findings);
+        assert!(estimate.findings.worth_telling(&made.limits.uncertainty).is_empty(), "{:?}", estimate.findings);
+    }
+
+    #[test]
+    fn the_unit_of_the_reconstruction_changes_nothing() {
+        let made = Made::cloud(town(), &seen());
+        let mut survey = town().cloud(&seen());
+        survey.sfm.points.iter_mut().for_each(|p| p.coords *= 7.0);
+        survey.city_from_sfm.scale /= 7.0;
+        let other = Made::new(town(), survey);
+        let (one, two) = (sigma_m(&found(&made).0), sigma_m(&found(&other).0));
+        assert!((one / two - 1.0).abs() < 1e-3, "{one} {two}");
+    }
+
+    #[test]
+    fn a_house_that_stands_elsewhere_moves_the_pose_by_less_than_its_share() {
+        let block = town();
+        let made = with_other_model(&block, |k, house| {
+            if k == 1 {
+                shifted(house, [0.3, 0.3, 0.0]);
+            }
+        });
+        let (estimate, scene) = found(&made);
+        let level_m = made.error(&scene, &estimate.city_from_level).level_m;
+        let share_m = 0.3 * 2f64.sqrt() / block.houses.len() as f64;
+        assert!(level_m < share_m, "{level_m} {share_m}");
+    }
+
+    #[test]
+    fn houses_that_stand_off_each_on_its_own_widen_the_sigmas_and_are_found() {
+        let block = town();
+        let exact = found(&with_other_model(&block, |_, _| ())).0;
+        let off = |k: usize| [0.2, -0.2, 0.1, -0.1][k % 4] * if k % 8 < 4 { 1.0 } else { -1.0 };
+        let made = with_other_model(&block, |k, house| shifted(house, [off(k), off(k / 2 + 1), 0.0]));
+        let (estimate, _) = found(&made);
+        assert!(sigma_m(&estimate) > 1.3 * sigma_m(&exact), "{} {}", sigma_m(&estimate), sigma_m(&exact));
+        assert!(estimate.findings.buildings_m > 0.07, "{:?}", estimate.findings);
+    }
+
+    #[test]
+    fn walls_under_eaves_are_told_and_do_not_pull_the_scale() {
+        let block = town();
+        let made = with_other_model(&block, |_, house| {
+            let corners = || house.faces.iter().flat_map(|face| &face.corners);
+            let middle = corners().map(|c| c.coords).sum::<Vector3<f64>>() / corners().count() as f64;
+            // A house is grown about its middle in plan: by some 0.3 m a wall.
+            let reach = corners().map(|c| (c.coords - middle).xy().norm()).sum::<f64>() / corners().count() as f64;
+            for corner in house.faces.iter_mut().flat_map(|face| &mut face.corners) {
+                let arm = (corner.coords - middle).xy();
+                corner.x += arm.x / reach * 0.4;
+                corner.y += arm.y / reach * 0.4;
+            }
+        });
+        let (estimate, scene) = found(&made);
+        let found_m = estimate.findings.walls_inset_m;
+        assert!((0.2..0.4).contains(&found_m), "{:?}", estimate.findings);
+        let told = estimate.findings.worth_telling(&made.limits.uncertainty);
+        assert!(told.iter().any(|text| text.contains("inside the model's")), "{told:?}");
+        let scale_error = estimate.city_from_level.scale / made.truth(&scene).scale - 1.0;
+        assert!(scale_error.abs() < 2e-3, "{scale_error}");
+    }
+
+    #[test]
+    fn half_of_the_points_give_nearly_the_same_sigmas_and_points_given_twice_the_same() {
+        let made = Made::cloud(town(), &seen());
+        let whole = sigma_m(&found(&made).0);
+        let mut half = town().cloud(&seen());
+        let keep = |k: usize| k % 2 == 0;
+        let mut k = 0;
+        half.sfm.points.retain(|_| {
+            k += 1;
+            keep(k)
+        });
+        k = 0;
+        half.sfm.normals.retain(|_| {
+            k += 1;
+            keep(k)
+        });
+        k = 0;
+        half.face_of_point.retain(|_| {
+            k += 1;
+            keep(k)
+        });
+        let of_half = sigma_m(&found(&Made::new(town(), half)).0);
+        assert!((of_half / whole - 1.0).abs() < 0.2, "{of_half} {whole}");
+        let mut twice = town().cloud(&seen());
+        twice.sfm.points.extend_from_within(..);
+        twice.sfm.normals.extend_from_within(..);
+        twice.face_of_point.extend_from_within(..);
+        let of_twice = sigma_m(&found(&Made::new(town(), twice)).0);
+        assert!((of_twice / whole - 1.0).abs() < 0.02, "{of_twice} {whole}");
+    }
+
+    #[test]
+    fn a_given_scale_is_kept_to_the_bit_and_nothing_is_said_to_hold_it() {
+        let made = Made::cloud(town(), &seen());
+        let scene = made.scene(&Offset::default(), Motion::Rigid);
+        let estimate = estimate(&Refiner::new(&scene), &scene.prior.expected());
+        assert_eq!(estimate.city_from_level.scale.to_bits(), 1f64.to_bits());
+        assert!(estimate.information.column(6).norm() < 1e-6, "{}", estimate.information);
+    }
+
+    #[test]
+    fn the_information_is_that_of_least_squares_with_the_dense_covariance() {
+        let made = Made::four_houses();
+        let scene = made.scene(&Offset::default(), Motion::Similarity);
+        let (refiner, pose) = (Refiner::new(&scene), made.truth(&scene));
+        let chart = refiner.assess(&[], &pose, 0.0).chart;
+        let sample = sample(&refiner, &pose, scene.unit_m);
+        let system = System::settled(&refiner, &pose, &chart, &sample);
+        let (n, count) = (system.common, sample.pieces.len());
+        let mut covariance = DMatrix::zeros(count, count);
+        let known = system.known();
+        let mut share = |pieces: &std::ops::Range<usize>, column: usize, variance: f64| {
+            for i in pieces.clone() {
+                for j in pieces.clone() {
+                    covariance[(i, j)] += system.rows[(column, i)] * system.rows[(column, j)] * variance;
+                }
+            }
+        };
+        (POSE..n).for_each(|k| share(&(0..count), k, 1.0 / known[(k, k)]));
+        for (b, building) in sample.buildings.iter().enumerate() {
+            let fronts = &sample.fronts[building.fronts.clone()];
+            let pieces = fronts[0].pieces.start..fronts[fronts.len() - 1].pieces.end;
+            let variance = system.spreads.building[building.kind as usize] / system.building_weights[b];
+            (0..OF_BUILDING).for_each(|k| share(&pieces, n + 1 + k, variance));
+            for f in building.fronts.clone() {
+                let front = &sample.fronts[f];
+                let variance = system.spreads.front[front.kind as usize] / system.front_weights[f];
+                (0..OF_FRONT).for_each(|k| share(&front.pieces, n + 1 + OF_BUILDING + k, variance));
+            }
+        }
+        for i in 0..count {
+            covariance[(i, i)] += system.variance_of_piece(i) / system.piece_weights[i];
+        }
+        let pose_rows = system.rows.rows(0, POSE).transpose();
+        let expected = pose_rows.transpose() * inverse(covariance) * &pose_rows;
+        let found = system.held().full();
+        assert!((&found - &expected).norm() < 1e-6 * expected.norm(), "{found} {expected}");
+    }
 }

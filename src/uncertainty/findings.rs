@@ -1,6 +1,7 @@
 //! What the unknowns beside the pose turned out to be, and what of it is worth telling.
 
 use super::estimate::{COMMON, LIDS, System, WALLS};
+use super::sample::Kind;
 use crate::limits::UncertaintyLimits;
 
 /// Errors of the model and of the reconstruction, metres.
@@ -30,8 +31,8 @@ impl Findings {
             walls_inset_sigma_m: sigma_m(WALLS),
             tops_lower_m: system.found[LIDS],
             tops_lower_sigma_m: sigma_m(LIDS),
-            buildings_m: system.spreads.building.sqrt(),
-            fronts_m: system.spreads.front.sqrt(),
+            buildings_m: system.spreads.building[Kind::Built as usize].sqrt(),
+            fronts_m: system.spreads.front[Kind::Built as usize].sqrt(),
             bending_m: if bending_shows(system) { bends_m } else { 0.0 },
         }
     }

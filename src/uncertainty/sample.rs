@@ -28,6 +28,19 @@ pub(super) struct Piece {
     pub points: f64,
 }
 
+/// What errs by the same spread: surveys of ground and of buildings differ, and a box's lid says little of the roof below it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Of an object that has walls.
+    Built,
+    /// Of an object without walls.
+    Ground,
+    /// A level top in a model of boxes.
+    Lid,
+}
+
+pub(super) const KINDS: usize = 3;
+
 /// Planes of one building in one plane in space.
 #[derive(Clone, Debug)]
 pub(super) struct Front {
@@ -38,7 +51,8 @@ pub(super) struct Front {
     pub reach_m: [f64; 2],
     pub is_wall: bool,
     /// A level top of something with walls.
-    pub is_lid: bool,
+    pub is_top: bool,
+    pub kind: Kind,
 }
 
 #[derive(Clone, Debug)]
@@ -47,6 +61,8 @@ pub(super) struct Building {
     pub middle: Point3<f64>,
     /// Where a turn is felt as a shift of the same size, metres.
     pub lever_m: f64,
+    /// Built or ground.
+    pub kind: Kind,
 }
 
 /// What is observed, sorted by buildings and fronts.
@@ -93,12 +109,7 @@ pub(super) fn sample(refiner: &Refiner, pose: &Similarity, gate_m: f64) -> Sampl
         let has_walls = body.is_some_and(|body| body.has_walls);
         sample.take_building(of_building, has_walls, scene.limits.upright_sin, limits);
     }
-    let roofs = || sample.fronts.iter().filter(|front| !front.is_wall);
-    sample.has_lids_only = sample.fronts.iter().any(|front| front.is_lid)
-        && roofs().all(|front| {
-            front.is_lid
-                || sample.pieces[front.pieces.clone()].iter().all(|p| p.normal.z > 1.0 - scene.limits.upright_sin)
-        });
+    sample.tell_lids();
     sample
 }
 
@@ -126,6 +137,15 @@ fn building_of(
 }
 
 impl Sample {
+    /// Whether the model is one of boxes: all tops on which points lie are level.
+    fn tell_lids(&mut self) {
+        let mut tops = self.fronts.iter().filter(|front| front.kind == Kind::Built && !front.is_wall).peekable();
+        self.has_lids_only = tops.peek().is_some() && tops.all(|front| front.is_top);
+        if self.has_lids_only {
+            self.fronts.iter_mut().filter(|front| front.is_top).for_each(|front| front.kind = Kind::Lid);
+        }
+    }
+
     fn take_building(&mut self, rows: &[Placed], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
         let first = self.fronts.len();
         for front in fronts(rows, limits) {
@@ -134,7 +154,8 @@ impl Sample {
         let middle = centroid(rows.iter().map(|p| p.row));
         let spread = rows.iter().map(|p| (p.row.place - middle).xy().norm_squared()).sum::<f64>() / rows.len() as f64;
         let lever_m = spread.sqrt().max(limits.least_lever_m);
-        self.buildings.push(Building { fronts: first..self.fronts.len(), middle, lever_m });
+        let kind = if has_walls { Kind::Built } else { Kind::Ground };
+        self.buildings.push(Building { fronts: first..self.fronts.len(), middle, lever_m, kind });
     }
 
     fn take_front(&mut self, rows: &[&ProbeOnPlane], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
@@ -157,8 +178,9 @@ impl Sample {
             reach_m.max(limits.piece_m)
         });
         let is_wall = normal.z.abs() < upright_sin;
-        let is_lid = has_walls && normal.z > 1.0 - upright_sin;
-        self.fronts.push(Front { pieces: first..self.pieces.len(), middle, axes, reach_m, is_wall, is_lid });
+        let is_top = has_walls && normal.z > 1.0 - upright_sin;
+        let kind = if has_walls { Kind::Built } else { Kind::Ground };
+        self.fronts.push(Front { pieces: first..self.pieces.len(), middle, axes, reach_m, is_wall, is_top, kind });
     }
 }
 

@@ -348,6 +348,22 @@ mod tests {
     }
 
     #[test]
+    fn a_freedom_that_rests_on_one_witness_alone_is_undetermined() {
+        let mut hold = hold(None);
+        assert_eq!(ruling(&[rival([0.0; 3], 0.8, 0.0)], &hold, true).verdict, Verdict::Aligned);
+        hold.without[1][(5, 5)] = 0.0;
+        let ruling = ruling(&[rival([0.0; 3], 0.8, 0.0)], &hold, true);
+        assert_eq!(ruling.verdict, Verdict::Undetermined);
+        assert!(ruling.reason.contains("along up"), "{}", ruling.reason);
+    }
+
+    #[test]
+    fn what_is_determined_is_for_the_user_to_say() {
+        let exact = Hold { accuracy_m: 0.04, ..hold(None) };
+        assert_eq!(ruling(&[rival([0.0; 3], 0.8, 0.0)], &exact, true).verdict, Verdict::Undetermined);
+    }
+
+    #[test]
     fn a_shift_along_what_is_open_is_no_rival_and_any_other_is() {
         let same = ruling(&[rival([0.0; 3], 30.0), rival([0.0, 0.0, 4.0], 29.0)], &hold(Some(5)));
         assert_eq!(same.verdict, Verdict::Undetermined);

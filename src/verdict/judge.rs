@@ -350,9 +350,9 @@ mod tests {
     #[test]
     fn a_freedom_that_rests_on_one_witness_alone_is_undetermined() {
         let mut hold = hold(None);
-        assert_eq!(ruling(&[rival([0.0; 3], 0.8, 0.0)], &hold, true).verdict, Verdict::Aligned);
+        assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Aligned);
         hold.without[1][(5, 5)] = 0.0;
-        let ruling = ruling(&[rival([0.0; 3], 0.8, 0.0)], &hold, true);
+        let ruling = ruling(&[rival([0.0; 3], 30.0)], &hold);
         assert_eq!(ruling.verdict, Verdict::Undetermined);
         assert!(ruling.reason.contains("along up"), "{}", ruling.reason);
     }
@@ -360,7 +360,7 @@ mod tests {
     #[test]
     fn what_is_determined_is_for_the_user_to_say() {
         let exact = Hold { accuracy_m: 0.04, ..hold(None) };
-        assert_eq!(ruling(&[rival([0.0; 3], 0.8, 0.0)], &exact, true).verdict, Verdict::Undetermined);
+        assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &exact).verdict, Verdict::Undetermined);
     }
 
     #[test]

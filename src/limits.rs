@@ -319,6 +319,9 @@ pub struct UncertaintyLimits {
     pub largest_building_m: f64,
     /// ... into squares of this width. Chosen: a building's width.
     pub square_m: f64,
+    /// An object is built where its walls have more than this share of its other surface; else it is ground. Derived: a hall of 100 m, 8 m
+    /// high, has 0.3; a quay of 3 m along a square of 60 m has 0.05.
+    pub least_walls: f64,
     /// A turn is not felt by less than this. Chosen: half a small house.
     pub least_lever_m: f64,
     /// Planes of a building are one in space within this angle and distance. Measured on wrong poses: what is nearer fits or
@@ -533,6 +536,7 @@ impl Default for Limits {
                 piece_m: 2.0,
                 largest_building_m: 80.0,
                 square_m: 25.0,
+                least_walls: 0.1,
                 least_lever_m: 5.0,
                 same_front_deg: 8.0,
                 same_front_m: 0.5,

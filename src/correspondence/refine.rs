@@ -268,6 +268,31 @@ mod tests {
     }
 
     #[test]
+    fn noise_across_the_walls_does_not_make_the_scale_smaller() {
+        // Ten centimetres of noise; a smaller cloud has less of it.
+        let noisy = CloudOptions { noise_m: 0.1, points_per_roof: 100, outlier_share: 0.0, ..CloudOptions::default() };
+        let made = Made::cloud(Block::four_houses().with_ground(true), &noisy);
+        let scene = made.scene(&Offset::default(), Motion::Similarity);
+        let refiner = Refiner::new(&scene);
+        let rows = refiner.probes_on_planes(&firm(&scene), &made.truth(&scene), scene.unit_m);
+        let chart = refiner.assess(&[], &made.truth(&scene), 0.0).chart;
+        let equations = refiner.equations(&chart, &rows);
+        let gradient: f64 = equations.gradient[6];
+        let expected: f64 = rows
+            .chunk_by(|a, b| a.hit.plane == b.hit.plane)
+            .map(|plane| {
+                let count: f64 = plane.iter().map(|row| row.weight).sum();
+                let variance = refiner.point_sigma_m.powi(2) + count * scene.limits.plane_sigma_m.powi(2);
+                let arm = |row: &ProbeOnPlane| {
+                    (row.hit.normal.dot(&(row.place - chart.center)) - row.hit.across_m) / chart.radius
+                };
+                plane.iter().map(|row| row.weight * arm(row) * row.hit.across_m).sum::<f64>() / variance
+            })
+            .sum();
+        assert!((gradient - expected).abs() < 1e-6 * expected.abs().max(1.0), "{gradient} {expected}");
+    }
+
+    #[test]
     fn settling_finds_the_height_by_a_handful_of_points_on_grazed_roofs() {
         let block = Block::four_houses();
         // Five points on each of the roofs (7, 10, 5.5 and 12 m high): too few for a patch.

@@ -33,7 +33,7 @@ pub(super) struct Piece {
 pub(super) enum Kind {
     /// Of an object that has walls.
     Built,
-    /// Of an object without walls.
+    /// Of an object with next to no walls: terrain has steps and quays.
     Ground,
     /// A level top in a model of boxes.
     Lid,
@@ -83,11 +83,12 @@ struct Placed<'a> {
     row: &'a ProbeOnPlane,
 }
 
-/// Extent of an object, and whether it has walls.
+/// Extent of an object, and how much of it is wall.
 struct Body {
     low: Point3<f64>,
     high: Point3<f64>,
-    has_walls: bool,
+    walls_m2: f64,
+    other_m2: f64,
 }
 
 /// What lies on the city within `gate_m` (metres of the start) at `pose`.
@@ -106,7 +107,7 @@ pub(super) fn sample(refiner: &Refiner, pose: &Similarity, gate_m: f64) -> Sampl
     let mut sample = Sample { point_sigma_m, ..Sample::default() };
     for of_building in placed.chunk_by(|a, b| a.building == b.building) {
         let body = bodies.get(&of_building[0].building.0);
-        let has_walls = body.is_some_and(|body| body.has_walls);
+        let has_walls = body.is_some_and(|body| body.walls_m2 > limits.least_walls * body.other_m2);
         sample.take_building(of_building, has_walls, scene.limits.upright_sin, limits);
     }
     sample.tell_lids();
@@ -116,10 +117,12 @@ pub(super) fn sample(refiner: &Refiner, pose: &Similarity, gate_m: f64) -> Sampl
 fn bodies(planes: &CityPlanes, upright_sin: f64) -> HashMap<ObjectId, Body> {
     let mut bodies: HashMap<ObjectId, Body> = HashMap::new();
     for plane in &planes.planes {
-        let body = bodies.entry(plane.object).or_insert(Body { low: plane.low, high: plane.high, has_walls: false });
+        let none = Body { low: plane.low, high: plane.high, walls_m2: 0.0, other_m2: 0.0 };
+        let body = bodies.entry(plane.object).or_insert(none);
         body.low = body.low.inf(&plane.low);
         body.high = body.high.sup(&plane.high);
-        body.has_walls |= plane.plane.normal.z.abs() < upright_sin;
+        let is_wall = plane.plane.normal.z.abs() < upright_sin;
+        *(if is_wall { &mut body.walls_m2 } else { &mut body.other_m2 }) += plane.area_m2;
     }
     bodies
 }

@@ -343,8 +343,8 @@ pub struct UncertaintyLimits {
     pub bending_worth: f64,
     /// One sigma of how far walls stand inside the model's. Measured on LoD1 and LoD2 models drawn from roofs: 0.2 to 0.5 m.
     pub walls_sigma_m: f64,
-    /// One sigma of how far tops are from the model's, where all are level (LoD1: half-way up pitched roofs) and where they are not.
-    /// Chosen.
+    /// One sigma of how far tops are from the model's, where all are level (LoD1: a lid at half or more of a pitched roof's height) and where
+    /// they are not (surveyed). Chosen: a lid alone still holds a height, if no better than a user asks for.
     pub lids_sigma_m: f64,
     pub roofs_sigma_m: f64,
     /// Degrees of freedom of the tails of buildings, fronts, pieces and points. Chosen: between Gaussian and Cauchy's, as Lange, Little and
@@ -549,7 +549,7 @@ impl Default for Limits {
                 piece_worth: 4.0,
                 bending_worth: 5.0,
                 walls_sigma_m: 0.3,
-                lids_sigma_m: 0.5,
+                lids_sigma_m: 0.25,
                 roofs_sigma_m: 0.1,
                 tails: 8.0,
                 fewest_left_out: 8,

@@ -37,13 +37,10 @@ impl Bending {
                 }
             }
         }
-        for i in 0..ALL {
-            for j in i + 1..ALL {
-                products[i][j] = products[j][i];
-            }
-        }
+        // Only the lower triangle is filled.
+        let of = |i: usize, j: usize| products[i.max(j)][i.min(j)];
         let product = |a: &[f64; ALL], b: &[f64; ALL]| -> f64 {
-            (0..ALL).map(|i| a[i] * (0..ALL).map(|j| products[i][j] * b[j]).sum::<f64>()).sum()
+            (0..ALL).map(|i| a[i] * (0..ALL).map(|j| of(i, j) * b[j]).sum::<f64>()).sum()
         };
         let mut done: Vec<[f64; ALL]> = Vec::new();
         let mut mixes = Vec::new();

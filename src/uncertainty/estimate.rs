@@ -582,6 +582,6 @@ mod tests {
         let pose_rows = system.rows.rows(0, POSE).transpose();
         let expected = pose_rows.transpose() * inverse(covariance) * &pose_rows;
         let found = system.held().full();
-        assert!((&found - &expected).norm() < 1e-6 * expected.norm(), "{found} {expected}");
+        assert!((found - &expected).norm() < 1e-6 * expected.norm(), "{found} {expected}");
     }
 }

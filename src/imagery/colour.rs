@@ -1,8 +1,11 @@
 //! A photograph in CIELAB, in which distances follow what the eye tells apart, freed of the finest noise.
+//!
+//! Source       sRGB: IEC 61966-2-1; CIELAB about the white of sRGB (D65): CIE 15
+
+use std::ops::Range;
 
 use image::RgbImage;
 use image::imageops::{FilterType, resize};
-use palette::{FromColor, Lab, LinSrgb, Srgb};
 
 /// L in 0 to 100, a and b about -100 to 100.
 pub(super) type Colour = [f32; 3];
@@ -10,11 +13,11 @@ pub(super) type Colour = [f32; 3];
 /// Where planes end shows at this many pixels; more only take longer.
 const WORKING_PIXELS: f64 = 1e6;
 
-/// Colours row by row from the top left.
+/// Colours row by row from the top left, each channel by itself, so that several pixels are handled at once.
 pub(super) struct LabImage {
     pub width: usize,
     pub height: usize,
-    pub pixels: Vec<Colour>,
+    pub channels: [Vec<f32>; 3],
 }
 
 impl LabImage {
@@ -23,10 +26,25 @@ impl LabImage {
         let (width, height) = photo.dimensions();
         let shrink = (WORKING_PIXELS / (f64::from(width) * f64::from(height))).sqrt();
         if shrink >= 1.0 {
-            return smoothed(&converted(photo));
+            return smoothed(converted(photo));
         }
         let side = |length: u32| (f64::from(length) * shrink).round().max(1.0) as u32;
-        smoothed(&converted(&resize(photo, side(width), side(height), FilterType::Triangle)))
+        smoothed(converted(&resize(photo, side(width), side(height), FilterType::Triangle)))
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.width == 0 || self.height == 0
+    }
+
+    pub fn pixel(&self, at: usize) -> Colour {
+        [0, 1, 2].map(|k| self.channels[k][at])
+    }
+
+    /// Of some pixels behind each other.
+    pub fn sum(&self, pixels: Range<usize>) -> Colour {
+        let [l, a, b] = self.channels.each_ref().map(|channel| &channel[pixels.clone()]);
+        let pixels = l.iter().zip(a).zip(b);
+        pixels.fold([0.0; 3], |sum, ((l, a), b)| [sum[0] + l, sum[1] + a, sum[2] + b])
     }
 }
 
@@ -34,34 +52,81 @@ pub(super) fn distance(a: &Colour, b: &Colour) -> f32 {
     ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)).sqrt()
 }
 
+/// Linear sRGB to CIE XYZ, over the white.
+const XYZ_OF_RGB: [[f32; 3]; 3] = [
+    [0.412_456_4 / 0.950_47, 0.357_576_1 / 0.950_47, 0.180_437_5 / 0.950_47],
+    [0.212_672_9, 0.715_152_2, 0.072_175_0],
+    [0.019_333_9 / 1.088_83, 0.119_192 / 1.088_83, 0.950_304_1 / 1.088_83],
+];
+
 fn converted(photo: &RgbImage) -> LabImage {
-    let to_lab = |rgb: &image::Rgb<u8>| {
-        let linear: LinSrgb<f32> = Srgb::new(rgb[0], rgb[1], rgb[2]).into_linear();
-        let lab = Lab::from_color(linear);
-        [lab.l, lab.a, lab.b]
-    };
+    let linear: Vec<f32> = (0..256u32).map(linear).collect();
     let (width, height) = (photo.width() as usize, photo.height() as usize);
-    LabImage { width, height, pixels: photo.pixels().map(to_lab).collect() }
+    let channel = |k: usize| -> Vec<f32> { photo.pixels().map(|pixel| linear[usize::from(pixel[k])]).collect() };
+    let mut channels = [channel(0), channel(1), channel(2)];
+    let [r, g, b] = &mut channels;
+    to_lab(r, g, b);
+    LabImage { width, height, channels }
+}
+
+/// Linear red, green and blue to CIELAB, in place.
+#[inline(never)]
+fn to_lab(r: &mut [f32], g: &mut [f32], b: &mut [f32]) {
+    for ((r, g), b) in r.iter_mut().zip(g).zip(b) {
+        let [x, y, z] = XYZ_OF_RGB.map(|row| lightness(row[0] * *r + row[1] * *g + row[2] * *b));
+        (*r, *g, *b) = (116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z));
+    }
+}
+
+/// Of an sRGB value of eight bits.
+fn linear(value: u32) -> f32 {
+    let share = value as f32 / 255.0;
+    if share <= 0.040_45 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+}
+
+/// CIELAB's cube root, linear where it is dark.
+#[inline]
+fn lightness(t: f32) -> f32 {
+    let dark = 841.0 / 108.0 * t + 4.0 / 29.0;
+    // A third of the logarithm, to 4 %; two steps of Newton's leave a millionth.
+    let mut root = f32::from_bits(t.to_bits() / 3 + 0x2a50_8c2d);
+    for _ in 0..2 {
+        root = (2.0 * root + t / (root * root)) / 3.0;
+    }
+    // Without a branch, so that the compiler handles several pixels at once.
+    let is_light = u32::from(t > 216.0 / 24_389.0).wrapping_neg();
+    f32::from_bits(root.to_bits() & is_light | dark.to_bits() & !is_light)
 }
 
 /// Along rows, then along columns; the border counts twice.
-fn smoothed(image: &LabImage) -> LabImage {
-    let (width, height) = (image.width, image.height);
-    let blend = |pixels: &[Colour], before: usize, here: usize, after: usize| -> Colour {
-        std::array::from_fn(|k| 0.25 * (pixels[before][k] + 2.0 * pixels[here][k] + pixels[after][k]))
-    };
-    let mut pixels = image.pixels.clone();
-    for (i, out) in pixels.iter_mut().enumerate() {
-        let x = i % width;
-        *out = blend(&image.pixels, i - usize::from(x > 0), i, i + usize::from(x + 1 < width));
+fn smoothed(mut image: LabImage) -> LabImage {
+    let width = image.width;
+    // What a row was before it was smoothed: itself, or the one above.
+    let (mut before, mut here) = (vec![0.0; width], vec![0.0; width]);
+    for channel in &mut image.channels {
+        for row in channel.chunks_mut(width.max(1)) {
+            here.copy_from_slice(row);
+            let last = width - 1;
+            row[0] = 0.25 * (3.0 * here[0] + here[1.min(last)]);
+            row[last] = 0.25 * (3.0 * here[last] + here[last.saturating_sub(1)]);
+            for (out, three) in row.iter_mut().skip(1).zip(here.windows(3)) {
+                *out = 0.25 * (three[0] + 2.0 * three[1] + three[2]);
+            }
+        }
+        let mut rows = channel.chunks_mut(width.max(1)).peekable();
+        if let Some(first) = rows.peek() {
+            before.copy_from_slice(first);
+        }
+        while let Some(row) = rows.next() {
+            here.copy_from_slice(row);
+            let below = rows.peek().map_or(&here[..], |below| below);
+            for (((out, above), here), below) in row.iter_mut().zip(&before).zip(&here).zip(below) {
+                *out = 0.25 * (above + 2.0 * here + below);
+            }
+            std::mem::swap(&mut before, &mut here);
+        }
     }
-    let rows = pixels.clone();
-    for (i, out) in pixels.iter_mut().enumerate() {
-        let y = i / width;
-        let step = |inside: bool| if inside { width } else { 0 };
-        *out = blend(&rows, i - step(y > 0), i, i + step(y + 1 < height));
-    }
-    LabImage { width, height, pixels }
+    image
 }
 
 #[cfg(test)]
@@ -70,7 +135,7 @@ mod tests {
 
     #[test]
     fn white_black_and_red_have_their_cielab_values() {
-        let lab = |rgb| LabImage::of(&RgbImage::from_pixel(3, 2, image::Rgb(rgb))).pixels[4];
+        let lab = |rgb| LabImage::of(&RgbImage::from_pixel(3, 2, image::Rgb(rgb))).pixel(4);
         // CIE 15 for sRGB's primaries under D65.
         for (rgb, expected) in
             [([255, 255, 255], [100.0, 0.0, 0.0]), ([0, 0, 0], [0.0, 0.0, 0.0]), ([255, 0, 0], [53.24, 80.09, 67.20])]
@@ -83,5 +148,29 @@ mod tests {
     fn a_large_photograph_is_scaled_down_in_its_shape() {
         let image = LabImage::of(&RgbImage::new(4000, 1000));
         assert_eq!((image.width, image.height), (2000, 500));
+    }
+
+    #[test]
+    fn every_grey_has_the_lightness_of_its_luminance() {
+        for value in 0..=255u8 {
+            let [l, a, b] = LabImage::of(&RgbImage::from_pixel(2, 2, image::Rgb([value; 3]))).pixel(0);
+            let luminance = f64::from(linear(value.into()));
+            let dark = luminance <= 216.0 / 24_389.0;
+            let expected = if dark { luminance * 24_389.0 / 27.0 } else { 116.0 * luminance.cbrt() - 16.0 };
+            assert!((f64::from(l) - expected).abs() < 2e-3 && a.abs() < 0.02 && b.abs() < 0.02, "{value}: {l} {a} {b}");
+        }
+    }
+
+    #[test]
+    fn smoothing_blends_neighbours_and_counts_the_border_twice() {
+        let white = |x: u32, y: u32| if (x, y) == (0, 0) { [255; 3] } else { [0; 3] };
+        let image = LabImage::of(&RgbImage::from_fn(4, 3, |x, y| image::Rgb(white(x, y))));
+        let l: Vec<f32> = image.channels[0].iter().map(|l| l / 100.0).collect();
+        let across = [0.75, 0.25, 0.0, 0.0];
+        for (y, down) in [0.75, 0.25, 0.0].into_iter().enumerate() {
+            for (x, across) in across.into_iter().enumerate() {
+                assert!((l[y * 4 + x] - across * down).abs() < 1e-4, "{l:?}");
+            }
+        }
     }
 }

@@ -22,10 +22,13 @@ pub(super) struct Cells {
 
 pub(super) fn slic(image: &LabImage) -> Cells {
     let mut centers = seeds(image);
-    let mut nearest = vec![0; image.pixels.len()];
-    for _ in 0..ROUNDS {
-        assign(image, &centers, &mut nearest);
-        recenter(image, &nearest, &mut centers);
+    let (mut least, mut nearest) = (vec![0.0; image.width * image.height], vec![0; image.width * image.height]);
+    for round in 0..ROUNDS {
+        if round > 0 {
+            recenter(image, &nearest, &mut centers);
+        }
+        least.fill(f32::INFINITY);
+        assign(image, &centers, &mut least, &mut nearest);
     }
     connected(&nearest, image.width, image.height)
 }
@@ -43,42 +46,78 @@ fn seeds(image: &LabImage) -> Vec<Center> {
     let middle = |i: usize, cells: usize, length: usize| (2 * i + 1) * length / (2 * cells);
     let seed = |i: usize| {
         let (x, y) = (middle(i % columns, columns, image.width), middle(i / columns, rows, image.height));
-        Center { colour: image.pixels[y * image.width + x], x: x as f32, y: y as f32 }
+        Center { colour: image.pixel(y * image.width + x), x: x as f32, y: y as f32 }
     };
     (0..columns * rows).map(seed).collect()
 }
 
-/// Gives each pixel the nearest of the centres within a cell's side; the first of equals.
-fn assign(image: &LabImage, centers: &[Center], nearest: &mut [u32]) {
+/// Pixels that a processor handles at once.
+const LANES: usize = 4;
+
+/// Gives each pixel the nearest of the centres within a cell's side, or a few pixels farther; the first of equals. `least` is how far it is.
+fn assign(image: &LabImage, centers: &[Center], least: &mut [f32], nearest: &mut [u32]) {
     let per_px = (COMPACTNESS / CELL_PX).powi(2);
     let window = |at: f32, length: usize| ((at - CELL_PX).max(0.0) as usize, ((at + CELL_PX) as usize + 1).min(length));
-    let mut least = vec![f32::INFINITY; nearest.len()];
-    for (index, center) in centers.iter().enumerate() {
+    let (mut across, mut down) = (Vec::new(), Vec::new());
+    for (center, index) in centers.iter().zip(0..) {
         let ((left, right), (top, bottom)) = (window(center.x, image.width), window(center.y, image.height));
-        for y in top..bottom {
-            let down = (y as f32 - center.y).powi(2);
-            let row = y * image.width..(y + 1) * image.width;
-            let pixels = &image.pixels[row.clone()][left..right];
-            let (least, nearest) = (&mut least[row.clone()][left..right], &mut nearest[row][left..right]);
-            for (i, pixel) in pixels.iter().enumerate() {
-                let colour: f32 = (0..3).map(|k| (pixel[k] - center.colour[k]).powi(2)).sum();
-                let distance = colour + per_px * (((left + i) as f32 - center.x).powi(2) + down);
-                if distance < least[i] {
-                    (least[i], nearest[i]) = (distance, index as u32);
-                }
-            }
+        let right = (left + (right - left).next_multiple_of(LANES)).min(image.width);
+        let apart = |at: usize, center: f32| per_px * (at as f32 - center).powi(2);
+        across.clear();
+        across.extend((left..right).map(|x| apart(x, center.x)));
+        down.clear();
+        down.extend((top..bottom).map(|y| apart(y, center.y)));
+        let window = top * image.width + left..(bottom - 1) * image.width + right;
+        let channels = image.channels.each_ref().map(|channel| &channel[window.clone()]);
+        let apart = Apart { across: &across, down: &down, width: image.width };
+        offer(center, index, channels, &apart, &mut least[window.clone()], &mut nearest[window]);
+    }
+}
+
+/// What the columns and rows of a window stand off a centre, squared, in colours; and the width of the image.
+struct Apart<'a> {
+    across: &'a [f32],
+    down: &'a [f32],
+    width: usize,
+}
+
+/// Offers a centre to the pixels of a window. Without branches, so that the compiler handles several pixels at once.
+#[inline(never)]
+fn offer(center: &Center, index: u32, [l, a, b]: [&[f32]; 3], apart: &Apart, least: &mut [f32], nearest: &mut [u32]) {
+    let (across, count, [of_l, of_a, of_b]) = (apart.across, apart.across.len(), center.colour);
+    for (row, down) in apart.down.iter().enumerate() {
+        let row = row * apart.width..row * apart.width + count;
+        let (l, a, b) = (&l[row.clone()], &a[row.clone()], &b[row.clone()]);
+        let (least, nearest) = (&mut least[row.clone()], &mut nearest[row]);
+        for i in 0..count {
+            let off = [l[i] - of_l, a[i] - of_a, b[i] - of_b];
+            let distance = off[0] * off[0] + off[1] * off[1] + off[2] * off[2] + (across[i] + down);
+            let is_nearer = distance < least[i];
+            least[i] = select(is_nearer, distance.to_bits(), least[i].to_bits(), f32::from_bits);
+            nearest[i] = select(is_nearer, index, nearest[i], |index| index);
         }
     }
+}
+
+#[inline]
+fn select<T>(first: bool, a: u32, b: u32, of: impl Fn(u32) -> T) -> T {
+    let mask = u32::from(first).wrapping_neg();
+    of(a & mask | b & !mask)
 }
 
 /// Moves each centre to the mean of its pixels; one without pixels stays.
 fn recenter(image: &LabImage, nearest: &[u32], centers: &mut [Center]) {
     let mut sums = vec![[0.0_f64; 6]; centers.len()];
-    for (i, (pixel, &center)) in image.pixels.iter().zip(nearest).enumerate() {
-        let (x, y) = (i % image.width, i / image.width);
-        let parts = [f64::from(pixel[0]), f64::from(pixel[1]), f64::from(pixel[2]), x as f64, y as f64, 1.0];
-        for (sum, part) in sums[center as usize].iter_mut().zip(parts) {
-            *sum += part;
+    for (y, row) in nearest.chunks(image.width).enumerate() {
+        let mut first = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let pixels = y * image.width + first..y * image.width + first + run.len();
+            let [l, a, b] = image.sum(pixels).map(f64::from);
+            let count = run.len() as f64;
+            let along = count * (first as f64 + 0.5 * (count - 1.0));
+            let parts = [l, a, b, along, count * y as f64, count];
+            sums[run[0] as usize].iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+            first += run.len();
         }
     }
     for (center, [l, a, b, x, y, count]) in centers.iter_mut().zip(sums) {
@@ -89,34 +128,71 @@ fn recenter(image: &LabImage, nearest: &[u32], centers: &mut [Center]) {
     }
 }
 
-/// Pieces of equal value that hang together by their sides, numbered as they come.
+/// Pieces of equal value that hang together by their sides, numbered as they come: runs of a row are joined to those that they touch
+/// above.
 fn connected(values: &[u32], width: usize, height: usize) -> Cells {
-    const NONE: u32 = u32::MAX;
-    let mut of_pixel = vec![NONE; values.len()];
-    let mut count = 0;
-    let mut open = Vec::new();
-    for first in 0..values.len() {
-        if of_pixel[first] != NONE {
-            continue;
-        }
-        of_pixel[first] = count;
-        open.push(first);
-        while let Some(pixel) = open.pop() {
-            let (x, y) = (pixel % width, pixel / width);
-            let left = (x > 0).then(|| pixel - 1);
-            let right = (x + 1 < width).then(|| pixel + 1);
-            let above = (y > 0).then(|| pixel - width);
-            let below = (y + 1 < height).then(|| pixel + width);
-            for beside in [left, right, above, below].into_iter().flatten() {
-                if of_pixel[beside] == NONE && values[beside] == values[first] {
-                    of_pixel[beside] = count;
-                    open.push(beside);
-                }
+    let mut runs: Vec<Run> = Vec::with_capacity(values.len() / 4);
+    let mut above = 0..0;
+    for row in values.chunks(width.max(1)).take(height) {
+        let begun = runs.len();
+        let (mut first, mut touched) = (0, above.start);
+        for run in row.chunk_by(|a, b| a == b) {
+            let (end, at) = (first + run.len() as u32, runs.len() as u32);
+            runs.push(Run { value: run[0], first, end, piece: at });
+            // Those that end before this one begins touch none that follow.
+            while touched < above.end && runs[touched].end <= first {
+                touched += 1;
             }
+            let mut other = touched;
+            while other < above.end && runs[other].first < end {
+                if runs[other].value == run[0] {
+                    join(&mut runs, other as u32, at);
+                }
+                other += 1;
+            }
+            first = end;
         }
-        count += 1;
+        above = begun..runs.len();
     }
-    Cells { count: count as usize, of_pixel }
+    let mut cells = Cells { count: 0, of_pixel: Vec::with_capacity(values.len()) };
+    let mut numbers = vec![0; runs.len()];
+    for at in 0..runs.len() as u32 {
+        let piece = piece_of(&mut runs, at);
+        if piece == at {
+            numbers[at as usize] = cells.count as u32;
+            cells.count += 1;
+        }
+        let run = &runs[at as usize];
+        let length = (run.end - run.first) as usize;
+        cells.of_pixel.extend(std::iter::repeat_n(numbers[piece as usize], length));
+    }
+    cells
+}
+
+/// Pixels of one value beside each other in a row.
+struct Run {
+    value: u32,
+    first: u32,
+    end: u32,
+    /// A run of the same piece that came before it; itself where there is none.
+    piece: u32,
+}
+
+/// Two runs are of one piece, whose number is that of its first.
+fn join(runs: &mut [Run], a: u32, b: u32) {
+    let (a, b) = (piece_of(runs, a), piece_of(runs, b));
+    runs[a.max(b) as usize].piece = a.min(b);
+}
+
+fn piece_of(runs: &mut [Run], mut run: u32) -> u32 {
+    loop {
+        let before = runs[run as usize].piece;
+        if before == run {
+            return run;
+        }
+        runs[run as usize].piece = runs[before as usize].piece;
+        run = before;
+    }
 }
 
 #[cfg(test)]
@@ -138,6 +214,36 @@ mod tests {
         for (i, cell) in cells.of_pixel.iter().enumerate().filter(|(i, _)| i % 60 < 26) {
             let other_side = i / 60 * 60 + 28;
             assert_ne!(*cell, cells.of_pixel[other_side]);
+        }
+    }
+
+    #[test]
+    fn pieces_are_those_of_a_flood_and_numbered_as_they_come() {
+        let (width, height) = (37, 29);
+        let mut random = crate::robust::Random::stream(4, 0);
+        for kinds in [2, 3, 6] {
+            let values: Vec<u32> = (0..width * height).map(|_| random.below(kinds) as u32).collect();
+            let cells = connected(&values, width, height);
+            let mut flooded = vec![usize::MAX; values.len()];
+            let mut count = 0;
+            for first in 0..values.len() {
+                if flooded[first] != usize::MAX {
+                    continue;
+                }
+                let mut open = vec![first];
+                while let Some(at) = open.pop() {
+                    if flooded[at] != usize::MAX || values[at] != values[first] {
+                        continue;
+                    }
+                    flooded[at] = count;
+                    let (x, y) = (at % width, at / width);
+                    open.extend((x > 0).then(|| at - 1).into_iter().chain((x + 1 < width).then_some(at + 1)));
+                    open.extend((y > 0).then(|| at - width).into_iter().chain((y + 1 < height).then_some(at + width)));
+                }
+                count += 1;
+            }
+            assert_eq!(cells.count, count);
+            assert!(cells.of_pixel.iter().zip(flooded).all(|(a, b)| *a as usize == b));
         }
     }
 }

@@ -32,8 +32,6 @@ impl Default for SuperpixelOptions {
     }
 }
 
-/// By which power the cost grows with the harmonic mean of what the two hold; Ward's 1 lets small pieces stay too long.
-const MASS_POWER: f32 = 1.25;
 /// Weight of the contrast across the border against the difference of the mean colours.
 const BORDER_WEIGHT: f32 = 2.0;
 /// Contrast is taken between the pixels this far behind the border on either side, since edges are two pixels wide.
@@ -43,7 +41,7 @@ const BEHIND_BORDER_PX: usize = 1;
 /// in pixels, where it shows points. The map may be smaller than the photograph.
 pub fn cut_superpixels(photo: &RgbImage, keypoints: &[(f64, f64)], options: &SuperpixelOptions) -> LabelMap {
     let image = LabImage::of(photo);
-    if image.pixels.is_empty() {
+    if image.is_empty() {
         return LabelMap { width: photo.width(), height: photo.height(), labels: Labels::U8(Vec::new()) };
     }
     let cells = slic(&image);
@@ -100,12 +98,15 @@ impl Merging {
         let empty =
             || Region { mass: 0.0, pixels: 0.0, colour_sum: [0.0; 3], borders: Vec::new(), version: 0, part_of: None };
         let mut regions: Vec<Region> = std::iter::repeat_with(empty).take(cells.count).collect();
-        for (pixel, &cell) in image.pixels.iter().zip(&cells.of_pixel) {
-            let region = &mut regions[cell as usize];
-            region.mass += 1.0;
-            region.pixels += 1.0;
-            add(&mut region.colour_sum, pixel);
+        let mut first = 0;
+        for run in cells.of_pixel.chunk_by(|a, b| a == b) {
+            let region = &mut regions[run[0] as usize];
+            let pixels = first..first + run.len();
+            region.pixels += run.len() as f32;
+            add(&mut region.colour_sum, &image.sum(pixels.clone()));
+            first = pixels.end;
         }
+        regions.iter_mut().for_each(|region| region.mass = region.pixels);
         for ([a, b], border) in borders(image, cells) {
             regions[a as usize].borders.push(Border { with: b, ..border });
             regions[b as usize].borders.push(Border { with: a, ..border });
@@ -123,9 +124,9 @@ impl Merging {
 
     /// Merges until `count` are left, or nothing touches; the label of each cell.
     fn down_to(mut self, count: usize) -> Vec<u32> {
-        for region in 0..self.regions.len() as u32 {
-            self.queue_borders(region, |with| with > region);
-        }
+        let all = 0..self.regions.len() as u32;
+        let offers = all.flat_map(|region| self.offers(region).filter(move |offer| offer.pair[1] > region));
+        self.queue = offers.map(Reverse).collect();
         let mut left = self.regions.len();
         while left > count.max(1) {
             let Some(Reverse(Offer { pair: [a, b], versions, .. })) = self.queue.pop() else { break };
@@ -161,19 +162,22 @@ impl Merging {
             beside.borders.retain(|border| border.with != from);
             beside.join_border(Border { with: into, ..border });
         }
-        self.queue_borders(into, |_| true);
+        let mut queue = std::mem::take(&mut self.queue);
+        queue.extend(self.offers(into).map(Reverse));
+        self.queue = queue;
     }
 
-    fn queue_borders(&mut self, region: u32, wanted: impl Fn(u32) -> bool) {
+    /// To merge a region with each of its neighbours.
+    fn offers(&self, region: u32) -> impl Iterator<Item = Offer> {
         let here = &self.regions[region as usize];
-        for border in here.borders.iter().filter(|border| wanted(border.with)) {
+        here.borders.iter().map(move |border| {
             let there = &self.regions[border.with as usize];
-            self.queue.push(Reverse(Offer {
+            Offer {
                 cost_bits: merging_cost(here, there, border).to_bits(),
                 pair: [region, border.with],
                 versions: [here.version, there.version],
-            }));
-        }
+            }
+        })
     }
 
     /// 1, 2, ... as the first cells come.
@@ -212,7 +216,9 @@ impl Region {
 }
 
 fn merging_cost(a: &Region, b: &Region, border: &Border) -> f32 {
-    let mass = (a.mass * b.mass / (a.mass + b.mass)).powf(MASS_POWER);
+    // To the power of 1.25: Ward's 1 lets small pieces stay too long.
+    let mass = a.mass * b.mass / (a.mass + b.mass);
+    let mass = mass * mass.sqrt().sqrt();
     let contrast = border.contrast_sum / border.length_px;
     let difference = distance(&a.mean_colour(), &b.mean_colour()) + BORDER_WEIGHT * contrast;
     let relative_length = border.length_px / a.pixels.min(b.pixels).sqrt();
@@ -222,33 +228,50 @@ fn merging_cost(a: &Region, b: &Region, border: &Border) -> f32 {
 /// The border of each two cells that touch, by the pair, smaller number first; `with` is not set yet.
 fn borders(image: &LabImage, cells: &Cells) -> Vec<([u32; 2], Border)> {
     let (width, height) = (image.width, image.height);
-    let mut steps: Vec<([u32; 2], f32)> = Vec::new();
-    let mut look = |here: usize, there: usize, behind_here: usize, behind_there: usize| {
-        let [a, b] = [cells.of_pixel[here], cells.of_pixel[there]];
-        if a != b {
-            let contrast = distance(&image.pixels[behind_here], &image.pixels[behind_there]);
-            steps.push(([a.min(b), a.max(b)], contrast));
-        }
+    let mut steps: Vec<Step> = Vec::new();
+    let mut step = |[a, b]: [u32; 2], behind: [usize; 2]| {
+        let contrast = distance(&image.pixel(behind[0]), &image.pixel(behind[1]));
+        steps.push(Step { pair: [a.min(b), a.max(b)], contrast });
     };
-    let behind = |at: usize| at.saturating_sub(BEHIND_BORDER_PX);
+    let before = |at: usize| at.saturating_sub(BEHIND_BORDER_PX);
+    let after = |at: usize, length: usize| (at + 1 + BEHIND_BORDER_PX).min(length - 1);
     for y in 0..height {
-        for x in 0..width {
-            let here = y * width + x;
-            if x + 1 < width {
-                look(here, here + 1, y * width + behind(x), y * width + (x + 1 + BEHIND_BORDER_PX).min(width - 1));
-            }
-            if y + 1 < height {
-                look(here, here + width, behind(y) * width + x, (y + 1 + BEHIND_BORDER_PX).min(height - 1) * width + x);
-            }
+        let row = &cells.of_pixel[y * width..(y + 1) * width];
+        for (x, pair) in row.windows(2).enumerate().filter(|(_, pair)| pair[0] != pair[1]) {
+            step([pair[0], pair[1]], [before(x), after(x, width)].map(|x| y * width + x));
+        }
+        let below = cells.of_pixel.get((y + 1) * width..(y + 2) * width).unwrap_or_default();
+        for (x, (a, b)) in row.iter().zip(below).enumerate().filter(|(_, (a, b))| a != b) {
+            step([*a, *b], [before(y), after(y, height)].map(|y| y * width + x));
         }
     }
-    // Stable, so that sums do not depend on anything but the picture.
-    steps.sort_by_key(|(pair, _)| *pair);
-    let gather = |steps: &[([u32; 2], f32)]| {
-        let contrast_sum = steps.iter().map(|(_, contrast)| contrast).sum();
-        (steps[0].0, Border { with: 0, length_px: steps.len() as f32, contrast_sum })
+    let gather = |steps: &[Step]| {
+        let contrast_sum = steps.iter().map(|step| step.contrast).sum();
+        (steps[0].pair, Border { with: 0, length_px: steps.len() as f32, contrast_sum })
     };
-    steps.chunk_by(|a, b| a.0 == b.0).map(gather).collect()
+    sorted(&steps, cells.count).chunk_by(|a, b| a.pair == b.pair).map(gather).collect()
+}
+
+/// A step from pixel to pixel across the border of two cells, the smaller number first.
+#[derive(Clone, Copy)]
+struct Step {
+    pair: [u32; 2],
+    contrast: f32,
+}
+
+/// By the pair; stable, so that sums do not depend on anything but the picture. Few steps begin at one cell: they are put to it first.
+fn sorted(steps: &[Step], cells: usize) -> Vec<Step> {
+    let mut next = vec![0usize; cells + 1];
+    steps.iter().for_each(|step| next[step.pair[0] as usize + 1] += 1);
+    (1..next.len()).for_each(|i| next[i] += next[i - 1]);
+    let mut sorted = vec![Step { pair: [0; 2], contrast: 0.0 }; steps.len()];
+    for step in steps {
+        let place = &mut next[step.pair[0] as usize];
+        sorted[*place] = *step;
+        *place += 1;
+    }
+    sorted.chunk_by_mut(|a, b| a.pair[0] == b.pair[0]).for_each(|of_cell| of_cell.sort_by_key(|step| step.pair[1]));
+    sorted
 }
 
 fn add(sum: &mut Colour, colour: &Colour) {

@@ -170,8 +170,8 @@ pub struct SearchLimits {
     pub most_draws: usize,
     /// Patches that lie on the city: the others are trees, cars, and houses that the model lacks. Chosen: half.
     pub on_city: f64,
-    /// Time to draw one pair (2 to 10 us, by the city) and to score one pose on the ranking probes (10 to 40 us). Measured on one core of a
-    /// shared EPYC, 2026-11-25; their ratio matters.
+    /// Time to draw one pair and to score one pose on the ranking probes, microseconds. Measured by `cargo bench --bench search` on one
+    /// core of a shared EPYC, 2026-11-30; their ratio matters.
     pub pair_us: f64,
     pub score_us: f64,
 }
@@ -453,8 +453,8 @@ impl Default for Limits {
                 learned_m: 1.0,
                 most_draws: 6,
                 on_city: 0.5,
-                pair_us: 5.0,
-                score_us: 20.0,
+                pair_us: 0.6,
+                score_us: 16.0,
             },
             refinement: RefinementLimits {
                 outside_share: 0.5,

@@ -129,7 +129,7 @@ mod tests {
     fn a_configuration_that_the_data_cannot_feed_is_never_chosen() {
         let [fast, five, slow] = prospects();
         let unfed = Prospect { fed: 0.0, poses: 0.0, chance: 0.0, ..fast };
-        assert_eq!(chosen(&[unfed, five, slow]), "(2,2,2,1)");
+        assert_eq!(chosen(&[unfed, five, slow]), "(3,1,1,1,1)");
         assert_eq!(chosen(&[unfed]), "");
     }
 

@@ -10,6 +10,7 @@
 //! Fails when   the pose is in another basin: then it is exactly wrong
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::bending::Bending;
 use super::elimination::{Eliminated, eliminate, inverse};
@@ -178,7 +179,7 @@ impl<'a> System<'a> {
     }
 
     fn solve(&mut self) {
-        self.parts = (0..self.sample.buildings.len()).map(|b| self.part(b)).collect();
+        self.parts = (0..self.sample.buildings.len()).into_par_iter().map(|b| self.part(b)).collect();
         let total = self.total();
         let known = self.known() + &self.start;
         self.covariance = inverse(total.view((0, 0), (self.common, self.common)) + known);

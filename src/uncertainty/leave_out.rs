@@ -9,6 +9,7 @@
 //! Source       Efron (1982), The jackknife, the bootstrap and other resampling plans
 
 use nalgebra::{DMatrix, SymmetricEigen};
+use rayon::prelude::*;
 
 use super::elimination::{eliminate, inverse};
 use super::estimate::{POSE, System};
@@ -39,7 +40,7 @@ pub(super) fn by_building(system: &System) -> Scatter {
         let found = -(inverse(rest.view((0, 0), (n, n)) + &given) * rest.view((0, n), (n, 1)).column(0));
         whiten * found.fixed_rows::<POSE>(0)
     };
-    let answers: Vec<Vector7> = (0..count).map(without).collect();
+    let answers: Vec<Vector7> = (0..count).into_par_iter().map(without).collect();
     let mean = answers.iter().sum::<Vector7>() / count as f64;
     let squares: Matrix7 = answers.iter().map(|answer| (answer - mean) * (answer - mean).transpose()).sum();
     let eigen = SymmetricEigen::new(squares * ((count - 1) as f64 / count as f64));
@@ -74,5 +75,6 @@ pub(super) fn by_front(system: &System) -> Vec<Matrix7> {
         system.of_pose(&(&total - &part.building.rest + rest)).0
     };
     let fronts = |part: usize| (0..system.parts[part].fronts.len()).map(move |front| (part, front));
-    (0..system.parts.len()).flat_map(fronts).map(|(part, front)| without(part, front)).collect()
+    let all: Vec<(usize, usize)> = (0..system.parts.len()).flat_map(fronts).collect();
+    all.into_par_iter().map(|(part, front)| without(part, front)).collect()
 }

@@ -372,8 +372,6 @@ pub struct VerdictLimits {
     pub determined_m: f64,
     /// ... or than this share of the radius, where that is more. Chosen: reconstructions bend by as much.
     pub determined_share: f64,
-    /// Fewest points that hold a plane. Derived: a single point lies on a plane by chance.
-    pub fewest_on_plane: usize,
     /// Gates that lead from a given scale to the data's own, units. Derived: from the search's to a vote's, step by step.
     pub scale_gates_units: &'static [f64],
     /// The data contradict a given scale where theirs is so many sigmas away ... Derived: 99.7 % of Gaussian errors.
@@ -562,7 +560,6 @@ impl Default for Limits {
                 same_m: 0.8,
                 determined_m: 0.35,
                 determined_share: 0.01,
-                fewest_on_plane: 2,
                 scale_gates_units: &[5.0, 5.0, 4.0, 3.3, 2.7, 2.3, 2.0, 1.7, 1.3, 1.0],
                 scale_sigmas: 3.0,
                 scale_m: 0.15,

@@ -6,8 +6,8 @@
 use std::sync::OnceLock;
 
 use cityweld::limits::{
-    ExposureLimits, Limits, PatchLimits, RefinementLimits, SearchLimits, SightLimits, UpLimits, VerdictLimits,
-    WalkLimits,
+    ContenderLimits, EvidenceLimits, ExposureLimits, Limits, PatchLimits, RefinementLimits, SearchLimits, SightLimits,
+    UncertaintyLimits, UpLimits, VerdictLimits, WalkLimits,
 };
 use cityweld::planes::PreparedCity;
 use cityweld::synthetic::{Assessment, Case, Errand, Levels, Outcome, Repeated, Setting};
@@ -67,12 +67,11 @@ numbers! {
         reach_sigmas, prior_cost, least_tilt_rad, model_unit_m, noise_sigmas, plane_sigma_m, least_point_sigma_m,
         same_normal_deg, grazing_deg, upright_sin, tells_floors_rad;
         whole: ;
-        not: exposure, patches, up, search, refinement, walk, sight, verdict
+        not: exposure, patches, up, search, refinement, walk, sight, contenders, evidence, uncertainty, verdict
     }
     verdict: verdict as VerdictLimits {
-        least_balance, least_balance_without_cameras, rival_share, comparable_share, least_lead_sigmas, same_m,
-        determined_m, scale_sigmas, scale_m;
-        whole: fewest_on_plane;
+        false_alarm, same_m, determined_m, determined_share, scale_sigmas, scale_m;
+        whole: ;
         // Steps of a path, not bounds.
         not: scale_gates_units
     }
@@ -94,12 +93,12 @@ numbers! {
     search: search as SearchLimits {
         gate_units, same_place_m, smallest_target_m2, same_angle_rad, same_cos, row_sigma_m, row_sigma_per_m, learned_m,
         on_city, pair_us, score_us;
-        whole: fewest_samples, most_samples, enough_hits, keep, ranking_probes;
+        whole: most_draws, fewest_samples, most_samples, enough_hits, keep, ranking_probes;
         not:
     }
     refinement: refinement as RefinementLimits {
         outside_share, held_m, loose_gate_sigmas, loose_weight, tukey_sigmas, least_gate_share, same_pose_units;
-        whole: sight_probes, lead_probes, most_voters;
+        whole: sight_probes, most_voters;
         // A path of narrowing gates.
         not: stages
     }
@@ -110,6 +109,25 @@ numbers! {
         not: most_steps, basin_moves_units, basin_gates_units
     }
     sight: sight as SightLimits { surroundings_m, camera_slack_m; whole: ; not: }
+    contenders: contenders as ContenderLimits {
+        least_reach_m, basin_m, basin_rad, basin_log_scale;
+        whole: count, samples, ranking_probes, refining_probes, heard;
+        // A bound of time, and a path of narrowing gates.
+        not: most_rounds, gates_units
+    }
+    evidence: evidence as EvidenceLimits {
+        same_plane_deg, same_plane_m, tolerance_m, tolerance_sigmas, unseen_contenders;
+        whole: probes, sight_probes;
+        // A grid that is averaged over.
+        not: blocked_when_right
+    }
+    uncertainty: uncertainty as UncertaintyLimits {
+        pose_gate_units, gate_units, piece_m, largest_building_m, square_m, least_walls, least_lever_m, same_front_deg,
+        same_front_m, building_sigma_m, front_sigma_m, piece_sigma_m, bending_share, building_worth, front_worth,
+        piece_worth, bending_worth, walls_sigma_m, lids_sigma_m, roofs_sigma_m, tails, told_sigmas, told_m, confirmed_times;
+        whole: rounds, steps, fewest_left_out;
+        not:
+    }
 }
 
 /// A scene and a start, right or wrong.
@@ -200,14 +218,15 @@ fn no_wrong_pose_is_aligned_by_a_fifth_of_a_number_of_the_verdict() {
     for task in tasks() {
         println!("{}: {:?}", task.name(), task.outcome);
     }
-    let wrong = swept(&verdict());
+    let numbers: Vec<Number> = [verdict(), contenders(), evidence()].into_iter().flatten().collect();
+    let wrong = swept(&numbers);
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
 #[ignore = "takes minutes: all stages"]
 fn no_wrong_pose_is_aligned_by_a_fifth_of_any_number() {
-    let all = [whole_scene(), exposure(), patches(), up(), search(), refinement(), walk(), sight()];
+    let all = [whole_scene(), exposure(), patches(), up(), search(), refinement(), walk(), sight(), uncertainty()];
     let wrong = swept(&all.into_iter().flatten().collect::<Vec<Number>>());
     assert!(wrong.is_empty(), "{wrong:#?}");
 }

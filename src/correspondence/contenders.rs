@@ -32,13 +32,7 @@ pub fn contenders(refiner: &Refiner, answer: &Place, seed: u64, limits: &Contend
     let gates_m: Vec<f64> = limits.gates_units.iter().map(|gate| gate * scene.unit_m).collect();
     let is_elsewhere = |pose: &Similarity| !answer.has(pose);
     let of_batch = |batch: u64| {
-        let best = best_of(
-            &search,
-            seed,
-            batch,
-            std::env::var("CW_SAMPLES").ok().and_then(|x| x.parse().ok()).unwrap_or(limits.samples),
-            is_elsewhere,
-        )?;
+        let best = best_of(&search, seed, batch, limits.samples, is_elsewhere)?;
         let refined = refiner.refine(&refining, &best, &gates_m);
         is_elsewhere(&refined.city_from_level).then_some(refined)
     };

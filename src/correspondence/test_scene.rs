@@ -1,4 +1,4 @@
-//! Scenes of made-up blocks with their truth, for the tests of this room.
+//! Scenes of made-up blocks with their truth, for the tests of this room and of those above it.
 
 use super::scene::Scene;
 use crate::geometry::{Point3, Similarity, Start, StartSigmas, Vector3};

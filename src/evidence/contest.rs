@@ -92,3 +92,72 @@ impl<'a> Contest<'a> {
         sharp.into_iter().filter(|c| !answer.has(&c.candidate.refined.city_from_level)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correspondence::test_scene::Made;
+    use crate::geometry::{StartSigmas, Vector3};
+    use crate::planes::Upright;
+    use crate::robust::Motion;
+    use crate::synthetic::Offset;
+
+    /// A scene whose prior reaches over the whole block in every heading.
+    fn wide(made: &Made) -> Scene<'_> {
+        let up = made.survey.city_from_sfm.rotation.inverse() * Vector3::z();
+        let upright = Upright { up, sigma_rad: 0.0, known: true };
+        let sigmas = StartSigmas { position_m: 33.0, heading_rad: std::f64::consts::PI, ..StartSigmas::default() };
+        made.scene_with(&Offset::default(), sigmas, Motion::Similarity, &upright)
+    }
+
+    fn answer(scene: &Scene, made: &Made, off: &Offset) -> Refined {
+        settled(&Refiner::new(scene), &made.pose(scene, off))
+    }
+
+    #[test]
+    fn the_truth_has_more_evidence_than_chance_and_than_every_other_place() {
+        for made in [Made::four_houses(), Made::photographed()] {
+            let scene = wide(&made);
+            let truth = answer(&scene, &made, &Offset::default());
+            let contest = Contest::new(&scene, &truth, 1);
+            let bits = contest.weigh(&truth.city_from_level).bits;
+            assert!(bits > 20.0, "{bits}");
+            assert!(!contest.by_chance.is_empty() && contest.by_chance.is_sorted_by(|a, b| a >= b));
+            assert!(contest.by_chance[0] < bits - 10.0, "{bits} {:?}", &contest.by_chance[..3]);
+            for shift_m in [[4.0, 0.0, 0.0], [0.0, -6.0, 0.0], [3.0, 3.0, 1.5]] {
+                let other = answer(&scene, &made, &Offset { shift_m, ..Offset::default() });
+                let off_m = made.error(&scene, &other.city_from_level).level_m;
+                assert!(off_m < 1.0 || contest.weigh(&other.city_from_level).bits < bits - 10.0, "{shift_m:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wrong_answer_has_no_evidence_and_the_right_place_is_heard_beside_it() {
+        let made = Made::four_houses();
+        let scene = wide(&made);
+        let wrong = answer(&scene, &made, &Offset { shift_m: [9.0, -7.0, 0.0], heading_rad: 0.3, ..Offset::default() });
+        let contest = Contest::new(&scene, &wrong, 1);
+        assert!(contest.weigh(&wrong.city_from_level).bits < 10.0);
+        let best = contest.others.iter().map(|other| other.weighed.bits).fold(f64::NEG_INFINITY, f64::max);
+        assert!(best > contest.weigh(&wrong.city_from_level).bits, "{best}");
+        let nearest_m = |c: &Contestant| made.error(&scene, &c.candidate.refined.city_from_level).level_m;
+        let found = contest.others.iter().any(|other| nearest_m(other) < 0.1 && other.by_chance);
+        assert!(found, "{:?}", contest.others.iter().map(nearest_m).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn what_leads_to_the_answer_but_for_an_open_height_is_no_contender() {
+        let made = Made::walls();
+        let scene = wide(&made);
+        let refiner = Refiner::new(&scene);
+        let truth =
+            refiner.sharpen(&(0..scene.votes.firm as u32).collect::<Vec<_>>(), &made.truth(&scene), scene.unit_m);
+        let limits = &made.limits;
+        let place = Place::of(&truth, limits.refinement.held_m, &limits.contenders);
+        let at = |shift_m: [f64; 3]| made.pose(&scene, &Offset { shift_m, ..Offset::default() });
+        assert!(place.has(&at([0.0, 0.0, 5.0])) && place.has(&at([0.5, 0.5, -4.0])));
+        assert!(!place.has(&at([3.0, 0.0, 0.0])));
+        assert!(!Place::around(&refiner, &truth.city_from_level).has(&at([0.0, 0.0, 5.0])));
+    }
+}

@@ -98,3 +98,43 @@ fn class(patch: &LevelPatch, upright_sin: f64) -> Class {
         _ => Class::Slope,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correspondence::test_scene::{Made, walls_alone};
+    use crate::robust::Motion;
+    use crate::synthetic::{Block, CloudOptions, House, Offset};
+
+    fn of_block(block: Block, seen: &CloudOptions) -> (Witnesses, usize) {
+        let made = Made::cloud(block, seen);
+        let scene = made.scene(&Offset::default(), Motion::Similarity);
+        (Witnesses::new(&scene, 1.0, &made.limits.evidence), scene.votes.patches.len())
+    }
+
+    #[test]
+    fn a_front_across_several_houses_is_one_witness() {
+        // Three houses in a row, 3 m between them: two fronts, six gables.
+        let row = Block::row(&House::flat([8.0, 10.0, 7.0]), 3, 11.0);
+        let (witnesses, patches) = of_block(row, &walls_alone());
+        assert_eq!(witnesses.class.len(), 2 + 6);
+        assert!(patches >= 12, "{patches}");
+        assert!(witnesses.class.iter().all(|class| *class == Class::Wall));
+    }
+
+    #[test]
+    fn the_pieces_of_a_witness_share_its_one_vote_and_ask_their_own_points() {
+        let seen = CloudOptions { points_per_roof: 100, points_on_ground: 200, ..walls_alone() };
+        let (witnesses, patches) = of_block(Block::four_houses().with_ground(true), &seen);
+        assert_eq!(witnesses.pieces.len(), patches);
+        let mut total = vec![0.0; witnesses.class.len()];
+        witnesses.pieces.iter().for_each(|piece| total[piece.witness as usize] += piece.share);
+        assert!(total.iter().all(|sum| (sum - 1.0).abs() < 1e-12), "{total:?}");
+        assert!(witnesses.class.contains(&Class::Level));
+        for piece in &witnesses.pieces {
+            let probes = &witnesses.probes[piece.probes.clone()];
+            assert!(probes.len() >= 8 && probes.windows(2).all(|pair| pair[0] < pair[1]), "{probes:?}");
+            assert_eq!(piece.lines.len(), 3);
+        }
+    }
+}

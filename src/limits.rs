@@ -248,8 +248,8 @@ pub struct ContenderLimits {
     /// Each round has a batch of samples for every contender that is asked for; there are no more rounds than so many. Chosen: a bound
     /// for clouds of which few samples give a pose.
     pub most_rounds: u64,
-    /// Samples in a batch, of which the best is taken. Measured on 369 poses: with the best of ten, refined, the largest evidence by chance
-    /// stays below the bits of what was searched.
+    /// Samples in a batch, of which the best is taken. Measured on 180 generated captures: against the best of ten, right poses have a quarter
+    /// fewer bits and wrong answers no fewer than against the best of three; against single ones, one wrong answer in 114 has 12 bits.
     pub samples: usize,
     /// Probes that choose the best of a batch. Derived: as the search's.
     pub ranking_probes: usize,
@@ -506,7 +506,7 @@ impl Default for Limits {
             contenders: ContenderLimits {
                 count: 128,
                 most_rounds: 4,
-                samples: 10,
+                samples: 3,
                 ranking_probes: 200,
                 refining_probes: 400,
                 gates_units: &[5.0, 4.0, 3.3, 2.7, 2.0, 1.3, 1.0],

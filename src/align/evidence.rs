@@ -55,14 +55,7 @@ pub(super) fn gather(
     let rows = best.as_ref().map_or(Vec::new(), |best| rows(refiner, &best.city_from_level));
     let hold = hold(refiner, best.as_ref(), given_scale, accuracy_m);
     let findings = best.as_ref().map_or(Findings::default(), |best| best.findings);
-    let place = best.as_ref().map(|best| Place::around(refiner, &best.city_from_level));
-    // What the last estimate leads to the best pose is no rival: the search's own gates leave some poses half-way.
-    let last = |c: &Contestant| {
-        let pose = c.candidate.refined.city_from_level;
-        let is_near = place.as_ref().is_some_and(|place| place.has(&pose));
-        if is_near { estimate(refiner, &pose).city_from_level } else { pose }
-    };
-    let rivals: Vec<Rival> = contestants.par_iter().map(|c| rival(refiner, c, &last(c))).collect();
+    let rivals = best.as_ref().map_or(Vec::new(), |best| rivals(refiner, contestants, &best.city_from_level));
     let by_chance = contest.map_or(&[][..], |contest| &contest.by_chance);
     let speaks = |c: &Contestant| c.weighed.by_witness.iter().filter(|bits| **bits >= SPEAKS_BITS).count();
     let evidence = Evidence {
@@ -74,6 +67,19 @@ pub(super) fn gather(
         most_by_chance: by_chance.first().copied().unwrap_or(0.0),
     };
     Gathered { evidence, rows, firm: scene.votes.firm, findings }
+}
+
+/// The poses as the verdict compares them: the best as estimated, and so those about it, since what the last estimate leads to the best
+/// pose is no rival; the search's own gates leave some poses half-way.
+fn rivals(refiner: &Refiner, contestants: &[Contestant], best: &Similarity) -> Vec<Rival> {
+    let Some((first, others)) = contestants.split_first() else { return Vec::new() };
+    let place = Place::around(refiner, best);
+    let last = |c: &Contestant| {
+        let pose = c.candidate.refined.city_from_level;
+        if place.has(&pose) { estimate(refiner, &pose).city_from_level } else { pose }
+    };
+    let others: Vec<Rival> = others.par_iter().map(|c| rival(refiner, c, &last(c))).collect();
+    std::iter::once(rival(refiner, first, best)).chain(others).collect()
 }
 
 /// A plane speaks for a pose from so many bits on. Chosen: what chance gives to two in three.
@@ -103,8 +109,6 @@ fn rival(refiner: &Refiner, contestant: &Contestant, city_from_level: &Similarit
     let local = scene.city_from_sfm(city_from_level);
     Rival {
         city_from_sfm: Similarity { translation: local.translation + scene.city.model.origin, ..local },
-        share: candidate.share,
-        blocked: candidate.blocked,
         bits: contestant.weighed.bits,
         bits_of_start: scene.prior.bits(city_from_level),
         beyond_start: !scene.prior.reaches(&candidate.refined.city_from_level),

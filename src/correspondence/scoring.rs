@@ -37,14 +37,6 @@ impl Scene<'_> {
         Some(sum / count - cost).filter(|score| *score >= least)
     }
 
-    /// The vote of each probe of `panel`, 0 to 1.
-    #[cfg(test)]
-    pub fn panel_votes(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64) -> Vec<f64> {
-        let mut votes = vec![0.0; panel.len()];
-        self.each_vote(panel, city_from_level, gate_m, |k, vote| votes[k] = vote);
-        votes
-    }
-
     /// Tells `take` the vote of each probe of `panel` that has one.
     fn each_vote(&self, panel: &[u32], city_from_level: &Similarity, gate_m: f64, mut take: impl FnMut(usize, f64)) {
         let gate_m = gate_m * city_from_level.scale;
@@ -162,7 +154,8 @@ mod tests {
         assert!(cost > 0.001, "{cost}");
         let share = scene.panel_share(&panel, &truth, scene.unit_m);
         assert_eq!(scene.score(&panel, &truth, scene.unit_m), share - cost);
-        let votes = scene.panel_votes(&panel, &truth, scene.unit_m);
+        let mut votes = vec![0.0; panel.len()];
+        scene.each_vote(&panel, &truth, scene.unit_m, |k, vote| votes[k] = vote);
         assert_eq!(share, votes.iter().sum::<f64>() / votes.len() as f64);
     }
 }

@@ -24,8 +24,6 @@ pub struct Weighed {
     pub bits: f64,
     /// What each witness says at the likeliest share and scale.
     pub by_witness: Vec<f64>,
-    /// The likeliest share of the cloud's witnesses that the model knows, by class.
-    pub known: [f64; CLASSES],
 }
 
 /// Scales of the model's error, shares of the tolerance, one twice the other: from the noise of a good scan to the whole tolerance.
@@ -62,7 +60,6 @@ fn with_errors(errors: &Errors, witnesses: &Witnesses, outcomes: &Outcomes, chan
         let sums: [f64; SHARES.len()] = std::array::from_fn(|k| of_class().map(|w| logs[w][k]).sum());
         let likeliest = (0..SHARES.len()).fold(0, |best, k| if sums[k] > sums[best] { k } else { best });
         weighed.bits += log2_mean_exp2(&sums);
-        weighed.known[class] = SHARES[likeliest];
         of_class().for_each(|w| weighed.by_witness[w] = logs[w][likeliest]);
     }
     weighed
@@ -102,7 +99,7 @@ fn log_ratios(known: f64, right: &[f64; KINDS], chance: &[f64; KINDS]) -> [f64; 
 }
 
 /// log2 of the mean of 2^x.
-pub fn log2_mean_exp2(logs: &[f64]) -> f64 {
+fn log2_mean_exp2(logs: &[f64]) -> f64 {
     let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     most + (logs.iter().map(|x| (x - most).exp2()).sum::<f64>() / logs.len() as f64).log2()
 }

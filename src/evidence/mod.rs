@@ -7,8 +7,5 @@ mod contest;
 mod outcomes;
 mod witnesses;
 
-pub use bits::{Weighed, log2_mean_exp2, weigh};
-pub use chance::Chance;
+pub use bits::Weighed;
 pub use contest::{Contest, Contestant};
-pub use outcomes::{KINDS, Outcomes, outcomes};
-pub use witnesses::{Class, Piece, Witnesses};

@@ -33,10 +33,6 @@ pub struct Rival {
     pub beyond_start: bool,
     /// Whether it was fitted by chance, and is none of those among which the search chose.
     pub by_chance: bool,
-    /// Share of the vote that lies on the city, 0 to 1.
-    pub share: f64,
-    /// Share of the vote whose lines of sight the city would block.
-    pub blocked: f64,
 }
 
 impl Rival {
@@ -265,15 +261,7 @@ mod tests {
 
     fn rival(shift: [f64; 3], bits: f64) -> Rival {
         let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
-        Rival {
-            city_from_sfm,
-            bits,
-            bits_of_start: -1.0,
-            beyond_start: false,
-            by_chance: false,
-            share: 0.5,
-            blocked: 0.0,
-        }
+        Rival { city_from_sfm, bits, bits_of_start: -1.0, beyond_start: false, by_chance: false }
     }
 
     /// Two planes that hold everything to 0.05 m, but for the freedom `open`.

@@ -5,6 +5,8 @@
 //! Assumption   a plane is bound to the box of its corners
 //! Source       packing: Leutenegger, Lopez, Edgington 1997 (sort-tile-recursive)
 
+use std::cmp::Ordering;
+
 use crate::geometry::Vector3;
 use crate::planes::{CityPlane, CityPlanes, PlaneId};
 
@@ -76,6 +78,17 @@ impl Target {
         f64::from(self.offset)
     }
 
+    /// An order of planes that their numbers in the file have no part in, unless two are the same.
+    fn by_geometry(&self, other: &Target) -> Ordering {
+        let numbers = |t: &Target| {
+            let plane = [t.normal[0], t.normal[1], t.normal[2], t.offset, t.weight];
+            t.bounds.low.into_iter().chain(t.bounds.high).chain(plane)
+        };
+        let pairs = numbers(self).zip(numbers(other));
+        let differ = pairs.map(|(a, b)| a.total_cmp(&b)).find(|order| order.is_ne());
+        differ.unwrap_or_else(|| self.id.cmp(&other.id))
+    }
+
     /// Of the outward normal, radians; meaningless for level planes.
     pub fn azimuth(&self) -> f64 {
         f64::from(self.bounds.low[AZIMUTH])
@@ -134,7 +147,7 @@ impl Packed {
 fn tile(targets: &mut [Target], by: &[usize]) {
     let Some((&k, rest)) = by.split_first() else { return };
     let middle = |t: &Target| t.bounds.low[k] + t.bounds.high[k];
-    targets.sort_by(|a, b| middle(a).total_cmp(&middle(b)).then(a.id.cmp(&b.id)));
+    targets.sort_by(|a, b| middle(a).total_cmp(&middle(b)).then_with(|| a.by_geometry(b)));
     let blocks = targets.len().div_ceil(BLOCK);
     let slabs = (blocks as f64).powf(1.0 / by.len() as f64).ceil() as usize;
     targets.chunks_mut(BLOCK * blocks.div_ceil(slabs.max(1)).max(1)).for_each(|slab| tile(slab, rest));

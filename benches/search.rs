@@ -49,7 +49,7 @@ fn bench(criterion: &mut Criterion) {
         search.hypothesize(&mut random, &mut poses);
     }
     let mut next = 0;
-    criterion.bench_function("score on 200 probes", |bencher| {
+    criterion.bench_function("score on 100 probes", |bencher| {
         bencher.iter(|| {
             next = (next + 1) % POSES;
             search.score(&poses[next])

@@ -58,6 +58,8 @@ pub struct Sampler<'a> {
     errors: RowErrors,
     planes: &'a CityPlanes,
     targets: Targets,
+    /// Patches drawn for a place in a sample until one can lie anywhere.
+    draws: usize,
     /// Rising sums of the patches' weights: all, and those with an azimuth.
     all: Vec<f64>,
     turned: Vec<f64>,
@@ -90,6 +92,10 @@ struct Offers {
 /// Offers beyond so many are found anew with each draw: what a city without a start would offer must not fill the memory. Chosen: 32 MB.
 const MOST_OFFERS_KEPT: usize = 2_000_000;
 
+/// Draws of the pilot that tells whether patches find planes. Derived: a share is then known to 3 %.
+const PILOT_DRAWS: u64 = 256;
+/// Its own, so that what it tells does not hang on the user's seed.
+const PILOT_SEED: u64 = 0;
 /// Two normals nearer to parallel than this do not fix a rotation.
 const LEAST_SIN_BETWEEN: f64 = 0.3;
 /// Sum and difference of normals shorter than this have no direction.
@@ -110,7 +116,7 @@ impl<'a> Sampler<'a> {
                 })
                 .collect()
         };
-        Sampler {
+        let sampler = Sampler {
             votes,
             prior,
             limits,
@@ -121,7 +127,16 @@ impl<'a> Sampler<'a> {
             kept: AtomicUsize::new(0),
             all: rising(|_| true),
             turned: rising(|p| has_azimuth(&p.normal)),
-        }
+            draws: 1,
+        };
+        let draws = if sampler.fed() < limits.fed_share { limits.most_draws } else { 1 };
+        Sampler { draws, ..sampler }
+    }
+
+    /// The share of draws that a pilot can feed.
+    fn fed(&self) -> f64 {
+        let is_fed = |draw: &u64| self.draw(0, &mut Random::stream(PILOT_SEED, *draw)).is_some();
+        (0..PILOT_DRAWS).filter(is_fed).count() as f64 / PILOT_DRAWS as f64
     }
 
     /// Whether the level frame's z may be taken for up.
@@ -159,7 +174,7 @@ impl<'a> Sampler<'a> {
 
     /// Known up: one pair, and the heading that turns its patch into its plane.
     fn begin_level(&self, random: &mut Random) -> Option<Draft> {
-        let pair = (0..self.limits.most_draws).find_map(|_| self.first_pair(random.weighted(&self.turned)?, random))?;
+        let pair = (0..self.draws).find_map(|_| self.first_pair(random.weighted(&self.turned)?, random))?;
         let mut draft = Draft::new(self.belief(about_up_from(&pair.what.normal, &pair.what.target.normal)));
         draft.take(self.votes, pair);
         Some(draft)
@@ -182,7 +197,7 @@ impl<'a> Sampler<'a> {
 
     /// A pair of which the belief says little. A patch that can lie nowhere is not on the city, and another takes its turn.
     fn telling_pair(&self, belief: &Belief, random: &mut Random) -> Telling {
-        for _ in 0..self.limits.most_draws {
+        for _ in 0..self.draws {
             let Some(patch) = self.least_known(belief, random) else { return Telling::AllIsKnown };
             if let Some(pair) = self.next_pair(patch, belief, random) {
                 return Telling::Pair(pair);

@@ -2,10 +2,11 @@
 
 use super::economy::{cheapest, prospects};
 use super::pose_search::PoseSearch;
+use super::refine::Refiner;
 use super::sampler::Sampler;
 use super::scene::Scene;
 use crate::geometry::{Similarity, Vector3};
-use crate::robust::{Motion, Ranked, RansacOptions, ransac};
+use crate::robust::{Motion, Problem, Random, Ranked, RansacOptions, ransac};
 use crate::solvers::{Sought, Up};
 
 /// What a search found and how.
@@ -33,12 +34,67 @@ pub fn search(scene: &Scene, seed: u64, progress: &(dyn Fn(usize, usize) + Sync)
     let options = RansacOptions {
         seed,
         keep: limits.keep,
+        best_of_block: limits.best_of_block,
         fewest_samples: limits.fewest_samples,
         most_samples: limits.most_samples,
         enough_hits: limits.enough_hits,
     };
-    let (ranked, samples) = ransac(&with(&configuration), &options, |n| progress(n, options.most_samples));
+    let improving = Improving::new(scene, with(&configuration));
+    let (ranked, samples) = ransac(&improving, &options, |n| progress(n, options.most_samples));
     Hypotheses { ranked, solver: format!("{} {configuration}", sought.name()), samples }
+}
+
+/// A search whose better poses are refined before they are ranked: a minimal sample is off by metres at the rim of a scene, where a gate
+/// wide enough for it lets many wrong poses score as well as a right one. Where the model knows a twentieth of what was seen, the right pose
+/// is one of a few among tens of thousands, and stands out only once it is sharp.
+///
+/// Source: local optimisation in random consensus (Chum, Matas, Kittler 2003)
+struct Improving<'a> {
+    search: PoseSearch<'a>,
+    refiner: Refiner<'a>,
+    panel: Vec<u32>,
+    gates_m: Vec<f64>,
+    ranking_gate_m: f64,
+}
+
+impl<'a> Improving<'a> {
+    fn new(scene: &'a Scene<'a>, search: PoseSearch<'a>) -> Improving<'a> {
+        let limits = &scene.limits.search;
+        Improving {
+            search,
+            refiner: Refiner::new(scene),
+            panel: scene.votes.panel(limits.improving_probes),
+            gates_m: limits.improving_gates_units.iter().map(|gate| gate * scene.unit_m).collect(),
+            ranking_gate_m: limits.ranking_gate_units * scene.unit_m,
+        }
+    }
+}
+
+impl Problem for Improving<'_> {
+    type Pose = Similarity;
+
+    fn hypothesize(&self, random: &mut Random, poses: &mut Vec<Similarity>) {
+        self.search.hypothesize(random, poses);
+    }
+
+    fn score(&self, pose: &Similarity) -> f64 {
+        self.search.score(pose)
+    }
+
+    fn score_from(&self, pose: &Similarity, least: f64) -> Option<f64> {
+        self.search.score_from(pose, least)
+    }
+
+    fn improve(&self, _: f64, pose: Similarity) -> (f64, Similarity) {
+        let scene = self.search.scene;
+        let refined = self.refiner.refine(&self.panel, &pose, &self.gates_m).city_from_level;
+        let better = if scene.prior.reaches(&refined) { refined } else { pose };
+        (scene.score(&self.panel, &better, self.ranking_gate_m), better)
+    }
+
+    fn same(&self, a: &Similarity, b: &Similarity) -> bool {
+        self.search.same(a, b)
+    }
 }
 
 /// What is unknown of the pose in the level frame.
@@ -70,8 +126,14 @@ mod tests {
     fn searched(scene: &Scene, configuration: &Configuration, seed: u64) -> Vec<Ranked<Similarity>> {
         let (sampler, panel) = (Sampler::new(scene), scene.votes.panel(200));
         let search = PoseSearch { scene, sampler: &sampler, sought: sought(scene), configuration, panel: &panel };
-        let options =
-            RansacOptions { seed, keep: 60, fewest_samples: 2048, most_samples: MOST_SAMPLES, enough_hits: 3 };
+        let options = RansacOptions {
+            seed,
+            keep: 60,
+            best_of_block: 60,
+            fewest_samples: 2048,
+            most_samples: MOST_SAMPLES,
+            enough_hits: 3,
+        };
         ransac(&search, &options, |_| ()).0
     }
 
@@ -133,7 +195,9 @@ mod tests {
             assert_eq!(found.solver, "upright similarity (2,1,1,1)");
             assert!(found.samples >= made.limits.search.fewest_samples, "{}", found.samples);
             assert!(found.ranked.is_sorted_by(|a, b| a.score >= b.score) && found.ranked.len() <= 60);
-            assert!(nearest_m(&made, &scene, &found.ranked[..10]) < made.limits.search.same_place_m);
+            assert!(
+                nearest_m(&made, &scene, &found.ranked[..found.ranked.len().min(10)]) < made.limits.search.same_place_m
+            );
         }
     }
 

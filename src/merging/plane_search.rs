@@ -56,8 +56,14 @@ fn search(evidence: &PlaneEvidence, seed: u64) -> Option<Similarity> {
     let every = evidence.groups.len().div_ceil(SCORED_GROUPS);
     let scored = evidence.groups.iter().step_by(every).map(|g| (g, g.points.len().div_ceil(SCORED_POINTS))).collect();
     let problem = Search { radius: evidence.radius, sides, scored, center_b: center_of_b(evidence) };
-    let options =
-        RansacOptions { seed, keep: KEPT, fewest_samples: SAMPLES, most_samples: SAMPLES, enough_hits: usize::MAX };
+    let options = RansacOptions {
+        seed,
+        keep: KEPT,
+        best_of_block: KEPT,
+        fewest_samples: SAMPLES,
+        most_samples: SAMPLES,
+        enough_hits: usize::MAX,
+    };
     let (ranked, _) = ransac(&problem, &options, |_| ());
     let refined = ranked.iter().map(|found| {
         let pose = NARROWING.iter().fold(found.pose, |pose, bend| refine(evidence, &pose, *bend));

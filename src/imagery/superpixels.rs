@@ -45,10 +45,9 @@ pub fn cut_superpixels(photo: &RgbImage, keypoints: &[(f64, f64)], options: &Sup
         return LabelMap { width: photo.width(), height: photo.height(), labels: Labels::U8(Vec::new()) };
     }
     let cells = slic(&image);
-    let mut merging = Merging::new(&image, &cells);
-    merging.add_keypoints(&cells, &keypoint_pixels(&image, photo.dimensions(), keypoints));
-    let labels = merging.down_to(options.count);
-    let labels = cells.of_pixel.iter().map(|&cell| labels[cell as usize]).collect();
+    let keypoints = keypoint_pixels(&image, photo.dimensions(), keypoints);
+    let labels = Merging::new(regions(&image, &cells, &keypoints)).down_to(options.count);
+    let labels = cells.of_pixel.into_iter().map(|cell| labels[cell as usize]).collect();
     LabelMap { width: image.width as u32, height: image.height as u32, labels: Labels::U32(labels) }
 }
 
@@ -66,76 +65,49 @@ struct Region {
     colour_sum: Colour,
     /// To every neighbour, one each.
     borders: Vec<Border>,
-    /// Counts the changes, which make costs outdated.
-    version: u32,
+    /// What merging with some neighbour costs at least.
+    cheapest: Cost,
     /// What it has been merged into.
     part_of: Option<u32>,
 }
 
+/// As one of the two regions beside it has it; the other has the same.
 #[derive(Clone, Copy)]
 struct Border {
     with: u32,
     length_px: f32,
     contrast_sum: f32,
+    /// Of merging the two as they are.
+    cost: Cost,
 }
+
+/// The bits of a number that is not negative, which order as it does.
+type Cost = u32;
+
+/// More than merging costs.
+const NOTHING_TO_MERGE_WITH: Cost = Cost::MAX;
 
 struct Merging {
     regions: Vec<Region>,
-    /// The cheapest first.
-    queue: BinaryHeap<Reverse<Offer>>,
-}
-
-/// What it costs to merge two regions, as they are at these versions; ordered by the cost, whose bits order as it does.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Offer {
-    cost_bits: u32,
-    pair: [u32; 2],
-    versions: [u32; 2],
+    /// What is cheapest to each region, the cheapest first. What was its cheapest before is there too, and passed over.
+    queue: BinaryHeap<Reverse<(Cost, u32)>>,
 }
 
 impl Merging {
-    fn new(image: &LabImage, cells: &Cells) -> Merging {
-        let empty =
-            || Region { mass: 0.0, pixels: 0.0, colour_sum: [0.0; 3], borders: Vec::new(), version: 0, part_of: None };
-        let mut regions: Vec<Region> = std::iter::repeat_with(empty).take(cells.count).collect();
-        let mut first = 0;
-        for run in cells.of_pixel.chunk_by(|a, b| a == b) {
-            let region = &mut regions[run[0] as usize];
-            let pixels = first..first + run.len();
-            region.pixels += run.len() as f32;
-            add(&mut region.colour_sum, &image.sum(pixels.clone()));
-            first = pixels.end;
-        }
-        regions.iter_mut().for_each(|region| region.mass = region.pixels);
-        for ([a, b], border) in borders(image, cells) {
-            regions[a as usize].borders.push(Border { with: b, ..border });
-            regions[b as usize].borders.push(Border { with: a, ..border });
-        }
-        Merging { regions, queue: BinaryHeap::new() }
-    }
-
-    /// All keypoints together weigh as much as all pixels.
-    fn add_keypoints(&mut self, cells: &Cells, pixels: &[usize]) {
-        let mass = cells.of_pixel.len() as f32 / pixels.len() as f32;
-        for &pixel in pixels {
-            self.regions[cells.of_pixel[pixel] as usize].mass += mass;
-        }
+    fn new(regions: Vec<Region>) -> Merging {
+        let queue = regions.iter().zip(0..).map(|(region, number)| Reverse((region.cheapest, number))).collect();
+        Merging { regions, queue }
     }
 
     /// Merges until `count` are left, or nothing touches; the label of each cell.
     fn down_to(mut self, count: usize) -> Vec<u32> {
-        let all = 0..self.regions.len() as u32;
-        let offers = all.flat_map(|region| self.offers(region).filter(move |offer| offer.pair[1] > region));
-        self.queue = offers.map(Reverse).collect();
         let mut left = self.regions.len();
         while left > count.max(1) {
-            let Some(Reverse(Offer { pair: [a, b], versions, .. })) = self.queue.pop() else { break };
-            let holds = [a, b].iter().zip(versions).all(|(&region, version)| {
-                let region = &self.regions[region as usize];
-                region.part_of.is_none() && region.version == version
-            });
-            if holds {
-                self.merge(a, b);
+            let Some(Reverse((cost, number))) = self.queue.pop() else { break };
+            let region = &self.regions[number as usize];
+            let cheapest = region.borders.iter().filter(|border| border.cost == cost && region.cheapest == cost);
+            if let Some(with) = cheapest.map(|border| border.with).min() {
+                self.merge(number, with);
                 left -= 1;
             }
         }
@@ -148,13 +120,13 @@ impl Merging {
         let (into, from) = if neighbours(a) >= neighbours(b) { (a, b) } else { (b, a) };
         let gone = &mut self.regions[from as usize];
         gone.part_of = Some(into);
+        gone.cheapest = NOTHING_TO_MERGE_WITH;
         let (mass, pixels, colour_sum) = (gone.mass, gone.pixels, gone.colour_sum);
         let inherited = std::mem::take(&mut gone.borders);
         let grown = &mut self.regions[into as usize];
         grown.mass += mass;
         grown.pixels += pixels;
         add(&mut grown.colour_sum, &colour_sum);
-        grown.version += 1;
         grown.borders.retain(|border| border.with != from);
         for border in inherited.into_iter().filter(|border| border.with != into) {
             self.regions[into as usize].join_border(border);
@@ -162,22 +134,27 @@ impl Merging {
             beside.borders.retain(|border| border.with != from);
             beside.join_border(Border { with: into, ..border });
         }
-        let mut queue = std::mem::take(&mut self.queue);
-        queue.extend(self.offers(into).map(Reverse));
-        self.queue = queue;
+        self.count_costs(into);
     }
 
-    /// To merge a region with each of its neighbours.
-    fn offers(&self, region: u32) -> impl Iterator<Item = Offer> {
-        let here = &self.regions[region as usize];
-        here.borders.iter().map(move |border| {
-            let there = &self.regions[border.with as usize];
-            Offer {
-                cost_bits: merging_cost(here, there, border).to_bits(),
-                pair: [region, border.with],
-                versions: [here.version, there.version],
+    /// Counts anew what merging costs a region that has changed, and its neighbours.
+    fn count_costs(&mut self, number: u32) {
+        let mut borders = std::mem::take(&mut self.regions[number as usize].borders);
+        for border in &mut borders {
+            border.cost = merging_cost(&self.regions[number as usize], &self.regions[border.with as usize], border);
+            let beside = &mut self.regions[border.with as usize];
+            if let Some(theirs) = beside.borders.iter_mut().find(|theirs| theirs.with == number) {
+                theirs.cost = border.cost;
             }
-        })
+            if beside.find_cheapest() {
+                self.queue.push(Reverse((beside.cheapest, border.with)));
+            }
+        }
+        let here = &mut self.regions[number as usize];
+        here.borders = borders;
+        if here.find_cheapest() {
+            self.queue.push(Reverse((here.cheapest, number)));
+        }
     }
 
     /// 1, 2, ... as the first cells come.
@@ -204,6 +181,13 @@ impl Region {
         self.colour_sum.map(|sum| sum / self.pixels)
     }
 
+    /// Whether the cheapest has another cost than before.
+    fn find_cheapest(&mut self) -> bool {
+        let before = self.cheapest;
+        self.cheapest = self.borders.iter().map(|border| border.cost).min().unwrap_or(NOTHING_TO_MERGE_WITH);
+        self.cheapest != before
+    }
+
     fn join_border(&mut self, more: Border) {
         match self.borders.iter_mut().find(|border| border.with == more.with) {
             Some(border) => {
@@ -215,63 +199,71 @@ impl Region {
     }
 }
 
-fn merging_cost(a: &Region, b: &Region, border: &Border) -> f32 {
+fn merging_cost(a: &Region, b: &Region, border: &Border) -> Cost {
     // To the power of 1.25: Ward's 1 lets small pieces stay too long.
     let mass = a.mass * b.mass / (a.mass + b.mass);
     let mass = mass * mass.sqrt().sqrt();
     let contrast = border.contrast_sum / border.length_px;
     let difference = distance(&a.mean_colour(), &b.mean_colour()) + BORDER_WEIGHT * contrast;
     let relative_length = border.length_px / a.pixels.min(b.pixels).sqrt();
-    mass * difference * difference / relative_length
+    (mass * difference * difference / relative_length).to_bits()
 }
 
-/// The border of each two cells that touch, by the pair, smaller number first; `with` is not set yet.
-fn borders(image: &LabImage, cells: &Cells) -> Vec<([u32; 2], Border)> {
-    let (width, height) = (image.width, image.height);
-    let mut steps: Vec<Step> = Vec::new();
-    let mut step = |[a, b]: [u32; 2], behind: [usize; 2]| {
-        let contrast = distance(&image.pixel(behind[0]), &image.pixel(behind[1]));
-        steps.push(Step { pair: [a.min(b), a.max(b)], contrast });
+/// A region of each cell, with its borders and what merging across them costs.
+fn regions(image: &LabImage, cells: &Cells, keypoint_pixels: &[usize]) -> Vec<Region> {
+    let empty = || Region {
+        mass: 0.0,
+        pixels: 0.0,
+        colour_sum: [0.0; 3],
+        borders: Vec::new(),
+        cheapest: NOTHING_TO_MERGE_WITH,
+        part_of: None,
     };
+    let mut regions: Vec<Region> = std::iter::repeat_with(empty).take(cells.count).collect();
+    let mut first = 0;
+    for run in cells.of_pixel.chunk_by(|a, b| a == b) {
+        let region = &mut regions[run[0] as usize];
+        let pixels = first..first + run.len();
+        region.pixels += run.len() as f32;
+        add(&mut region.colour_sum, &image.sum(pixels.clone()));
+        first = pixels.end;
+    }
+    regions.iter_mut().for_each(|region| region.mass = region.pixels);
+    // All keypoints together weigh as much as all pixels.
+    let mass = cells.of_pixel.len() as f32 / keypoint_pixels.len() as f32;
+    keypoint_pixels.iter().for_each(|&pixel| regions[cells.of_pixel[pixel] as usize].mass += mass);
+    for_each_step(image, cells, |[a, b], contrast_sum| {
+        regions[a.min(b) as usize].join_border(Border { with: a.max(b), length_px: 1.0, contrast_sum, cost: 0 });
+    });
+    // So far the smaller number has the border of a pair.
+    for number in 0..cells.count {
+        let mut borders = std::mem::take(&mut regions[number].borders);
+        for border in borders.iter_mut().filter(|border| border.with as usize > number) {
+            border.cost = merging_cost(&regions[number], &regions[border.with as usize], border);
+            regions[border.with as usize].borders.push(Border { with: number as u32, ..*border });
+        }
+        regions[number].borders = borders;
+        regions[number].find_cheapest();
+    }
+    regions
+}
+
+/// Tells of each step from pixel to pixel that crosses the border of two cells: which two, and the contrast there.
+fn for_each_step(image: &LabImage, cells: &Cells, mut step: impl FnMut([u32; 2], f32)) {
+    let (width, height) = (image.width, image.height);
+    let contrast = |[a, b]: [usize; 2]| distance(&image.pixel(a), &image.pixel(b));
     let before = |at: usize| at.saturating_sub(BEHIND_BORDER_PX);
     let after = |at: usize, length: usize| (at + 1 + BEHIND_BORDER_PX).min(length - 1);
     for y in 0..height {
         let row = &cells.of_pixel[y * width..(y + 1) * width];
         for (x, pair) in row.windows(2).enumerate().filter(|(_, pair)| pair[0] != pair[1]) {
-            step([pair[0], pair[1]], [before(x), after(x, width)].map(|x| y * width + x));
+            step([pair[0], pair[1]], contrast([before(x), after(x, width)].map(|x| y * width + x)));
         }
         let below = cells.of_pixel.get((y + 1) * width..(y + 2) * width).unwrap_or_default();
         for (x, (a, b)) in row.iter().zip(below).enumerate().filter(|(_, (a, b))| a != b) {
-            step([*a, *b], [before(y), after(y, height)].map(|y| y * width + x));
+            step([*a, *b], contrast([before(y), after(y, height)].map(|y| y * width + x)));
         }
     }
-    let gather = |steps: &[Step]| {
-        let contrast_sum = steps.iter().map(|step| step.contrast).sum();
-        (steps[0].pair, Border { with: 0, length_px: steps.len() as f32, contrast_sum })
-    };
-    sorted(&steps, cells.count).chunk_by(|a, b| a.pair == b.pair).map(gather).collect()
-}
-
-/// A step from pixel to pixel across the border of two cells, the smaller number first.
-#[derive(Clone, Copy)]
-struct Step {
-    pair: [u32; 2],
-    contrast: f32,
-}
-
-/// By the pair; stable, so that sums do not depend on anything but the picture. Few steps begin at one cell: they are put to it first.
-fn sorted(steps: &[Step], cells: usize) -> Vec<Step> {
-    let mut next = vec![0usize; cells + 1];
-    steps.iter().for_each(|step| next[step.pair[0] as usize + 1] += 1);
-    (1..next.len()).for_each(|i| next[i] += next[i - 1]);
-    let mut sorted = vec![Step { pair: [0; 2], contrast: 0.0 }; steps.len()];
-    for step in steps {
-        let place = &mut next[step.pair[0] as usize];
-        sorted[*place] = *step;
-        *place += 1;
-    }
-    sorted.chunk_by_mut(|a, b| a.pair[0] == b.pair[0]).for_each(|of_cell| of_cell.sort_by_key(|step| step.pair[1]));
-    sorted
 }
 
 fn add(sum: &mut Colour, colour: &Colour) {

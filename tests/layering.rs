@@ -16,7 +16,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robust", &["geometry", "solvers"]),
     ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["limits", "geometry", "city", "planes", "solvers", "robust"]),
-    ("evidence", &["limits", "geometry", "correspondence"]),
+    ("evidence", &["limits", "geometry", "planes", "correspondence"]),
     ("uncertainty", &["limits", "geometry", "city", "planes", "correspondence", "robust"]),
     ("verdict", &["limits", "geometry", "robust"]),
     (

@@ -92,9 +92,10 @@ numbers! {
     }
     search: search as SearchLimits {
         gate_units, same_place_m, smallest_target_m2, same_angle_rad, same_cos, row_sigma_m, row_sigma_per_m, learned_m,
-        on_city, pair_us, score_us;
-        whole: most_draws, fewest_samples, most_samples, enough_hits, keep, ranking_probes;
-        not:
+        ranking_gate_units, fed_share, on_city, pair_us, score_us;
+        whole: most_draws, fewest_samples, most_samples, enough_hits, best_of_block, improving_probes, keep, ranking_probes;
+        // A path of narrowing gates.
+        not: improving_gates_units
     }
     refinement: refinement as RefinementLimits {
         outside_share, held_m, loose_gate_sigmas, loose_weight, tukey_sigmas, least_gate_share, same_pose_units;
@@ -116,13 +117,12 @@ numbers! {
         not: most_rounds, gates_units
     }
     evidence: evidence as EvidenceLimits {
-        same_plane_deg, same_plane_m, tolerance_m, tolerance_sigmas, unseen_contenders;
-        whole: probes, sight_probes;
-        // A grid that is averaged over.
-        not: blocked_when_right
+        same_plane_deg, same_plane_m, tolerance_m, tolerance_sigmas, hidden_square_m, unseen_contenders;
+        whole: probes, sight_probes, hidden_probes;
+        not:
     }
     uncertainty: uncertainty as UncertaintyLimits {
-        pose_gate_units, gate_units, piece_m, largest_building_m, square_m, least_walls, least_lever_m, same_front_deg,
+        gate_units, piece_m, largest_building_m, square_m, least_walls, least_lever_m, same_front_deg,
         same_front_m, building_sigma_m, front_sigma_m, piece_sigma_m, bending_share, building_worth, front_worth,
         piece_worth, bending_worth, walls_sigma_m, lids_sigma_m, roofs_sigma_m, tails, told_sigmas, told_m, confirmed_times;
         whole: rounds, steps, fewest_left_out;

@@ -121,18 +121,13 @@ fn chart_of_prior(refiner: &Refiner) -> Chart {
     refiner.assess(&[], &refiner.scene.prior.expected(), 0.0).chart
 }
 
-/// The scale that the data would have, were it free, from a pose of the given scale on.
-pub(super) fn scale_from(refiner: &Refiner, contest: &Contest, candidate: &Candidate) -> GivenScale {
-    let (scene, free) = (refiner.scene, refiner.with_free_scale());
+/// The scale that the data have, were it free, from a pose on.
+pub(super) fn scale_of_data(refiner: &Refiner, contest: &Contest, best: &Contestant) -> GivenScale {
+    let (scene, free) = (refiner.scene, &refiner.with_free_scale());
     let firm: Vec<u32> = (0..scene.votes.firm as u32).collect();
     let gates_m: Vec<f64> = scene.limits.verdict.scale_gates_units.iter().map(|gate| gate * scene.unit_m).collect();
-    let near = free.refine(&firm, &candidate.refined.city_from_level, &gates_m).city_from_level;
-    scale_at(&free, contest, &settled(&free, &near).city_from_level)
-}
-
-/// The scale of a pose that was found with the scale free, beside the given one.
-pub(super) fn scale_at(free: &Refiner, contest: &Contest, pose: &Similarity) -> GivenScale {
-    let scene = free.scene;
+    let near = free.refine(&firm, &best.candidate.refined.city_from_level, &gates_m).city_from_level;
+    let pose = &settled(free, &near).city_from_level;
     let found = estimate(free, pose);
     let (pose, chart) = (&found.city_from_level, found.chart);
     // What is known beforehand of all else keeps an open height from opening the scale.

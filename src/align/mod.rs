@@ -6,15 +6,16 @@ mod report;
 
 use std::f64::consts::PI;
 
+use self::evidence::Gathered;
 use crate::correspondence::{Candidate, Hypotheses, Refiner, Scene, candidates, joined, search};
-use crate::evidence::{Contest, Contestant};
+use crate::evidence::Contest;
 use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
 use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
-use crate::verdict::{Alignment, GivenScale, Ruling, Verdict, judge};
+use crate::verdict::{Alignment, Ruling, Verdict, judge};
 
 /// Which way is up in the reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -70,18 +71,9 @@ pub fn align(
     }
     progress("city", 0, 1);
     let task = Task { city, patches: &patches, start: &start, options, progress };
-    let view = task.best_view(if options.fixed_scale.is_some() { Motion::Rigid } else { Motion::Similarity });
-    progress("evidence", 0, 1);
-    let surroundings = task.surroundings(&view);
-    let contest = view.candidates.first().map(|best| Contest::new(&surroundings, &best.refined, options.seed));
-    let contestants =
-        contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
-    let refiner = Refiner::new(&view.scene);
-    let given_scale = options.fixed_scale.and_then(|_| task.scale_of_data(&refiner, contest.as_ref()?, &contestants));
-    let holding = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale, options.accuracy_m);
-    let ruling = judge(&holding.evidence, &options.limits.verdict);
-    let up_elsewhere = up_elsewhere(&ruling, &patches, &start, options);
-    report::tell(ruling, holding, &view.hypotheses, &patches, up_elsewhere, city, options)
+    let answer = task.answer();
+    let up_elsewhere = up_elsewhere(&answer.ruling, &patches, &start, options);
+    report::tell(answer, &patches, up_elsewhere, city, options)
 }
 
 /// The start in the city's local frame. A scale that is given takes the place of the start's, about the cloud's middle.
@@ -112,7 +104,48 @@ struct View<'a> {
     candidates: Vec<Candidate>,
 }
 
+/// What was found, and what is said of it.
+struct Outcome {
+    ruling: Ruling,
+    found: Gathered,
+    hypotheses: Hypotheses,
+}
+
 impl<'a> Task<'a> {
+    /// With the scale that was given, if one was. Where the data deny it, or cannot tell with it, what they say with the scale free is asked: a
+    /// pose of the wrong scale is wrong everywhere.
+    fn answer(&self) -> Outcome {
+        if self.options.fixed_scale.is_none() {
+            return self.outcome(Motion::Similarity);
+        }
+        let of_given = self.outcome(Motion::Rigid);
+        if of_given.found.evidence.hold.agrees_with_given_scale(&self.options.limits.verdict) {
+            return of_given;
+        }
+        let free = self.outcome(Motion::Similarity);
+        if free.ruling.scale_is_denied { free } else { of_given }
+    }
+
+    fn outcome(&self, motion: Motion) -> Outcome {
+        let view = self.best_view(motion);
+        (self.progress)("evidence", 0, 1);
+        let surroundings = self.surroundings(&view);
+        let contest = view
+            .candidates
+            .first()
+            .map(|best| Contest::new(&surroundings, self.patches, &best.refined, self.options.seed));
+        let contestants =
+            contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
+        let refiner = Refiner::new(&view.scene);
+        let given_scale = self
+            .options
+            .fixed_scale
+            .and_then(|_| Some(evidence::scale_of_data(&refiner, contest.as_ref()?, contestants.first()?)));
+        let found = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale, self.options.accuracy_m);
+        let ruling = judge(&found.evidence, &self.options.limits.verdict);
+        Outcome { ruling, found, hypotheses: view.hypotheses }
+    }
+
     /// Searches under every up that there may be; the view with the best candidate, joined by the candidates of the others.
     fn best_view(&self, motion: Motion) -> View<'a> {
         let uprights = uprights(self.patches, self.start, self.options.up, &self.options.limits);
@@ -147,19 +180,6 @@ impl<'a> Task<'a> {
         let sigmas = StartSigmas { position_m: position_m.max(least_m), heading_rad: PI, ..*self.start.sigmas() };
         let start = self.start.with_sigmas(sigmas);
         Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits)
-    }
-
-    /// What the data say of a scale that was given: beside the best pose, and where that is not one to rely on, by a search of its own.
-    fn scale_of_data(&self, refiner: &Refiner, contest: &Contest, contestants: &[Contestant]) -> Option<GivenScale> {
-        let beside = contestants.first().map(|best| evidence::scale_from(refiner, contest, &best.candidate));
-        if beside.is_some_and(|scale| scale.bits >= self.options.limits.verdict.margin_bits()) {
-            return beside;
-        }
-        let free = self.best_view(Motion::Similarity);
-        let best = free.candidates.first()?;
-        let surroundings = self.surroundings(&free);
-        let contest = Contest::new(&surroundings, &best.refined, self.options.seed);
-        Some(evidence::scale_at(&Refiner::new(&free.scene), &contest, &best.refined.city_from_level))
     }
 }
 

@@ -1,26 +1,23 @@
 //! What the stages found, put together as an [`Alignment`].
 
-use super::AlignOptions;
 use super::evidence::Gathered;
 use super::obstacle::Obstacle;
-use crate::correspondence::{Hypotheses, NO_SOLVER, ProbeOnPlane};
+use super::{AlignOptions, Outcome};
+use crate::correspondence::{NO_SOLVER, ProbeOnPlane};
 use crate::geometry::Point3;
 use crate::planes::{Patches, PreparedCity, UpCandidate};
 use crate::uncertainty::Findings;
-use crate::verdict::{
-    Alignment, Certainty, ModelErrors, PlaneEvidence, Ruling, SearchSummary, Support, Verdict, freedoms,
-};
+use crate::verdict::{Alignment, Certainty, ModelErrors, PlaneEvidence, SearchSummary, Support, Verdict, freedoms};
 
-/// The alignment that a ruling makes of what was found.
+/// The alignment that an outcome makes.
 pub(super) fn tell(
-    ruling: Ruling,
-    found: Gathered,
-    hypotheses: &Hypotheses,
+    outcome: Outcome,
     patches: &Patches,
     up_elsewhere: Option<UpCandidate>,
     city: &PreparedCity,
     options: &AlignOptions,
 ) -> Alignment {
+    let Outcome { ruling, found, hypotheses } = outcome;
     let Gathered { evidence, rows, firm, findings } = found;
     let (rivals, hold) = (&evidence.rivals, &evidence.hold);
     Alignment {
@@ -38,11 +35,7 @@ pub(super) fn tell(
         covariance: hold.covariance(),
         support: support(&rows, firm),
         evidence: evidence_of_planes(&rows, city),
-        search: SearchSummary {
-            solver: hypotheses.solver.clone(),
-            samples: hypotheses.samples as u64,
-            seed: options.seed,
-        },
+        search: SearchSummary { solver: hypotheses.solver, samples: hypotheses.samples as u64, seed: options.seed },
         warnings: warnings(patches).into_iter().chain(findings.worth_telling(&options.limits.uncertainty)).collect(),
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Question     how well do poses lie on the city that were found as the answer was, but at other places?
 //! Input        a scene whose prior reaches beyond the search's, over places where the cloud does not stand
-//! Output       poses, each the best of a batch of minimal samples, refined
-//! Method       the search's own samples, scores and refinement, in batches of fixed size; each batch gives one pose
+//! Output       poses at distinct places, each the best of a batch of minimal samples, refined
+//! Method       the search's own samples, scores and refinement, in batches of fixed size; each batch gives one pose. A place counts once
+//!              however often it is found: a search takes the best of all places, and where the model is one house most samples meet it
 //! Why          poses at random places lie on far fewer planes than poses that were fitted; a chance taken from them makes every
 //!              fitted pose look right
 
@@ -18,7 +19,7 @@ use crate::geometry::Similarity;
 use crate::limits::ContenderLimits;
 use crate::robust::{Chart, Direction, Problem, Random};
 
-/// So many poses, none of which the refinement leads to the place of `answer`; fewer where the samples allow no more.
+/// So many poses at distinct places, none of which is that of `answer`; fewer where the samples allow no more.
 pub fn contenders(refiner: &Refiner, answer: &Place, seed: u64, limits: &ContenderLimits) -> Vec<Refined> {
     let scene = refiner.scene;
     let (sampler, sought, panel) = (Sampler::new(scene), sought(scene), scene.votes.panel(limits.ranking_probes));
@@ -36,14 +37,19 @@ pub fn contenders(refiner: &Refiner, answer: &Place, seed: u64, limits: &Contend
         let refined = refiner.refine(&refining, &best, &gates_m);
         is_elsewhere(&refined.city_from_level).then_some(refined)
     };
+    let mut places: Vec<Place> = Vec::with_capacity(limits.count);
     let mut found: Vec<Refined> = Vec::with_capacity(limits.count);
     for round in 0..limits.most_rounds {
         let first = round * limits.count as u64;
         let batches = first..first + limits.count as u64;
         let round: Vec<Option<Refined>> = batches.into_par_iter().map(of_batch).collect();
-        found.extend(round.into_iter().flatten());
+        for refined in round.into_iter().flatten() {
+            if found.len() < limits.count && !places.iter().any(|place| place.has(&refined.city_from_level)) {
+                places.push(Place::around(refiner, &refined.city_from_level));
+                found.push(refined);
+            }
+        }
         if found.len() >= limits.count {
-            found.truncate(limits.count);
             break;
         }
     }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::scene::Scene;
 use super::scoring::Mover;
-use crate::geometry::{Point3, Similarity};
+use crate::geometry::{Point3, Similarity, Vector3};
 
 /// Probes per task.
 const CHUNK: usize = 128;
@@ -31,12 +31,23 @@ impl Scene<'_> {
     }
 
     /// Whether the city stands between a point and a camera.
-    fn hides(&self, place: &Point3<f64>, camera: &Point3<f64>) -> bool {
+    pub fn hides(&self, place: &Point3<f64>, camera: &Point3<f64>) -> bool {
         let limits = &self.limits.sight;
         let sight = camera - place;
         let length = sight.norm() - limits.surroundings_m - limits.camera_slack_m;
         let Some(direction) = sight.try_normalize(0.0).filter(|_| length > 0.0) else { return false };
         self.city.rays().first_hit(&(place + direction * limits.surroundings_m), &direction, length).is_some()
+    }
+
+    /// Whether a point lies under a roof or under the ground, and so far inside that neither eaves nor the model's errors explain it: for
+    /// clouds without cameras.
+    pub fn buries(&self, place: &Point3<f64>) -> bool {
+        let inside_m = self.limits.sight.surroundings_m + self.limits.sight.camera_slack_m;
+        let sides = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+        sides.iter().all(|[x, y]| {
+            let from = place + inside_m * Vector3::new(*x, *y, 1.0);
+            self.city.rays().first_hit(&from, &Vector3::z(), f64::INFINITY).is_some()
+        })
     }
 }
 
@@ -44,7 +55,6 @@ impl Scene<'_> {
 mod tests {
     use super::*;
     use crate::correspondence::test_scene::{Made, firm};
-    use crate::geometry::Vector3;
     use crate::robust::Motion;
     use crate::synthetic::Offset;
 

@@ -7,11 +7,13 @@ use super::witnesses::{CLASSES, Witnesses};
 #[derive(Clone, Debug)]
 pub struct Chance {
     pub rates: [[f64; KINDS]; CLASSES],
+    /// Shares of the cloud that the city hides under contenders, ascending.
+    pub hidden: Vec<f64>,
 }
 
 impl Chance {
-    /// The mean over contenders, of whom `unseen` more met everything alike.
-    pub fn new(witnesses: &Witnesses, contenders: &[Outcomes], unseen: f64) -> Chance {
+    /// The mean over contenders, of whom `unseen` more met everything alike; `hidden` is what the city hides under each.
+    pub fn new(witnesses: &Witnesses, contenders: &[Outcomes], mut hidden: Vec<f64>, unseen: f64) -> Chance {
         let mut rates = [[unseen / KINDS as f64; KINDS]; CLASSES];
         let mut of_class = [0.0; CLASSES];
         for piece in &witnesses.pieces {
@@ -28,6 +30,7 @@ impl Chance {
         for (rates, _) in rates.iter_mut().zip(of_class).filter(|(_, weight)| *weight > 0.0) {
             rates.iter_mut().for_each(|rate| *rate /= total);
         }
-        Chance { rates }
+        hidden.sort_by(f64::total_cmp);
+        Chance { rates, hidden }
     }
 }

@@ -10,11 +10,13 @@ use rayon::prelude::*;
 
 use super::bits::{Weighed, weigh};
 use super::chance::Chance;
-use super::outcomes::outcomes;
+use super::hidden::SeenPoints;
+use super::outcomes::{Outcomes, outcomes};
 use super::witnesses::Witnesses;
 use crate::correspondence::{Candidate, Place, Refined, Refiner, Scene, candidate_at, contenders, settled};
 use crate::geometry::Similarity;
 use crate::limits::ContenderLimits;
+use crate::planes::Patches;
 
 /// A pose that may be right.
 #[derive(Clone, Debug)]
@@ -29,6 +31,7 @@ pub struct Contestant {
 pub struct Contest<'a> {
     scene: &'a Scene<'a>,
     witnesses: Witnesses,
+    seen: SeenPoints,
     chance: Chance,
     /// The best contenders, made as sharp as the search's candidates.
     pub others: Vec<Contestant>,
@@ -37,24 +40,28 @@ pub struct Contest<'a> {
 }
 
 impl<'a> Contest<'a> {
-    /// `scene` reaches beyond the start; `answer` is the search's best pose.
-    pub fn new(scene: &'a Scene<'a>, answer: &Refined, seed: u64) -> Contest<'a> {
+    /// `scene` reaches beyond the start, and is of the cloud of `patches`; `answer` is the search's best pose.
+    pub fn new(scene: &'a Scene<'a>, patches: &Patches, answer: &Refined, seed: u64) -> Contest<'a> {
         let limits = scene.limits;
         let refiner = Refiner::new(scene);
         let place = Place::of(answer, limits.refinement.held_m, &limits.contenders);
         let fitted = contenders(&refiner, &place, seed, &limits.contenders);
-        let witnesses = Witnesses::new(scene, answer.city_from_level.scale, &limits.evidence);
-        let of_pose = |pose: &Similarity| outcomes(scene, &witnesses, pose, &limits.evidence);
-        let met: Vec<_> = fitted.par_iter().map(|c| of_pose(&c.city_from_level)).collect();
-        let chance = Chance::new(&witnesses, &met, limits.evidence.unseen_contenders);
-        let mut ranked: Vec<(f64, Similarity)> = met
-            .iter()
-            .zip(&fitted)
-            .map(|(met, c)| (weigh(&witnesses, met, &chance, &limits.evidence).bits, c.city_from_level))
+        let scale = answer.city_from_level.scale;
+        let witnesses = Witnesses::new(scene, scale, &limits.evidence);
+        let seen = SeenPoints::new(scene, patches, scale, &limits.evidence);
+        let meet = |c: &Refined| {
+            let pose = &c.city_from_level;
+            (outcomes(scene, &witnesses, pose, &limits.evidence), seen.share_hidden(scene, pose))
+        };
+        let met: Vec<(Outcomes, f64)> = fitted.par_iter().map(meet).collect();
+        let (met, hidden): (Vec<Outcomes>, Vec<f64>) = met.into_iter().unzip();
+        let chance = Chance::new(&witnesses, &met, hidden.clone(), limits.evidence.unseen_contenders);
+        let mut ranked: Vec<(f64, Similarity)> = (met.iter().zip(&hidden).zip(&fitted))
+            .map(|((met, hidden), c)| (weigh(&witnesses, met, *hidden, &chance).bits, c.city_from_level))
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let by_chance = ranked.iter().map(|(bits, _)| *bits).collect();
-        let mut contest = Contest { scene, witnesses, chance, others: Vec::new(), by_chance };
+        let mut contest = Contest { scene, witnesses, seen, chance, others: Vec::new(), by_chance };
         // Refinement to the end gains some bits: who is twice the margin behind cannot become a rival.
         let least = contest.weigh(&answer.city_from_level).bits - 2.0 * limits.verdict.margin_bits();
         ranked.retain(|(bits, _)| *bits >= least);
@@ -64,8 +71,8 @@ impl<'a> Contest<'a> {
 
     /// The evidence of a pose.
     pub fn weigh(&self, pose: &Similarity) -> Weighed {
-        let evidence = &self.scene.limits.evidence;
-        weigh(&self.witnesses, &outcomes(self.scene, &self.witnesses, pose, evidence), &self.chance, evidence)
+        let met = outcomes(self.scene, &self.witnesses, pose, &self.scene.limits.evidence);
+        weigh(&self.witnesses, &met, self.seen.share_hidden(self.scene, pose), &self.chance)
     }
 
     /// How many planes in space can speak for a pose.
@@ -119,7 +126,7 @@ mod tests {
         for made in [Made::four_houses(), Made::photographed()] {
             let scene = wide(&made);
             let truth = answer(&scene, &made, &Offset::default());
-            let contest = Contest::new(&scene, &truth, 1);
+            let contest = Contest::new(&scene, &made.patches, &truth, 1);
             let bits = contest.weigh(&truth.city_from_level).bits;
             assert!(bits > 20.0, "{bits}");
             assert!(!contest.by_chance.is_empty() && contest.by_chance.is_sorted_by(|a, b| a >= b));
@@ -137,7 +144,7 @@ mod tests {
         let made = Made::four_houses();
         let scene = wide(&made);
         let wrong = answer(&scene, &made, &Offset { shift_m: [9.0, -7.0, 0.0], heading_rad: 0.3, ..Offset::default() });
-        let contest = Contest::new(&scene, &wrong, 1);
+        let contest = Contest::new(&scene, &made.patches, &wrong, 1);
         assert!(contest.weigh(&wrong.city_from_level).bits < 10.0);
         let best = contest.others.iter().map(|other| other.weighed.bits).fold(f64::NEG_INFINITY, f64::max);
         assert!(best > contest.weigh(&wrong.city_from_level).bits, "{best}");

@@ -4,6 +4,7 @@
 mod bits;
 mod chance;
 mod contest;
+mod hidden;
 mod outcomes;
 mod witnesses;
 

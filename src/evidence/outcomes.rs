@@ -7,11 +7,9 @@ use crate::limits::EvidenceLimits;
 
 /// What a probe can meet: a facet of its side and direction, nearer than one of these shares of the tolerance; ...
 pub const EDGES: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
-/// ... none; ...
+/// ... or none.
 pub const MISSED: usize = EDGES.len();
-/// ... or the city stands between it and its cameras.
-pub const BLOCKED: usize = MISSED + 1;
-pub const KINDS: usize = BLOCKED + 1;
+pub const KINDS: usize = MISSED + 1;
 
 /// For each piece the shares of its probes by what they meet.
 pub type Outcomes = Vec<[f64; KINDS]>;
@@ -25,14 +23,14 @@ pub fn outcomes(scene: &Scene, witnesses: &Witnesses, pose: &Similarity, limits:
     let of_piece = |piece: &Piece| {
         let mut shares = [0.0; KINDS];
         let lines = &blocked[piece.lines.clone()];
-        shares[BLOCKED] = lines.iter().filter(|b| **b).count() as f64 / lines.len().max(1) as f64;
+        // What no camera could have seen there is met by nobody.
+        let seen = 1.0 - lines.iter().filter(|b| **b).count() as f64 / lines.len().max(1) as f64;
         let mut on_city: Vec<f64> = off[piece.probes.clone()].iter().copied().filter(|m| m.is_finite()).collect();
-        let share = on_city.len() as f64 / piece.probes.len().max(1) as f64;
+        let share = seen * on_city.len() as f64 / piece.probes.len().max(1) as f64;
         // The points of a piece share its offset: their median tells it, the scatter about it does not.
         on_city.sort_by(f64::total_cmp);
-        let kind = on_city.get(on_city.len() / 2).map_or(MISSED, |m| band(m / tolerance_m));
-        shares[kind] += (1.0 - shares[BLOCKED]) * share;
-        shares[MISSED] += (1.0 - shares[BLOCKED]) * (1.0 - share);
+        shares[on_city.get(on_city.len() / 2).map_or(MISSED, |m| band(m / tolerance_m))] = share;
+        shares[MISSED] += 1.0 - share;
         shares
     };
     witnesses.pieces.iter().map(of_piece).collect()

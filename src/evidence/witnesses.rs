@@ -79,7 +79,8 @@ impl Witnesses {
         };
         let probes = evenly(limits.probes, &mut self.probes);
         let lines = evenly(limits.sight_probes, &mut self.lines);
-        let share = (patch.probes.len() as f64).sqrt();
+        // By its points: what else happens to lie in the plane of a front is small, and does not outvote it.
+        let share = patch.probes.len() as f64;
         self.pieces.push(Piece { witness, share, probes, lines });
     }
 }

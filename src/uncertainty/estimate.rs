@@ -57,16 +57,13 @@ pub(super) struct Spreads {
 }
 
 /// The estimate near a pose.
-///
-/// The pose is taken from what lies close to the city, where the right half of a model outvotes the wrong one; how exactly it is known from
-/// all that lies about it, where what the model has wrong is seen.
 pub fn estimate(refiner: &Refiner, pose: &Similarity) -> Estimate {
     let scene = refiner.scene;
     let limits = &scene.limits.uncertainty;
     let mut pose = *pose;
     for _ in 0..limits.rounds {
         let chart = refiner.assess(&[], &pose, 0.0).chart;
-        let sample = sample(refiner, &pose, limits.pose_gate_units * scene.unit_m);
+        let sample = sample(refiner, &pose, limits.gate_units * scene.unit_m);
         let system = System::settled(refiner, &pose, &chart, &sample);
         let moved = chart.moved(&pose, &chart.step(&system.held(), scene.limits.refinement.held_m));
         if !moved.translation.iter().all(|v| v.is_finite()) || !scene.prior.reaches(&moved) {

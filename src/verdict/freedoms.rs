@@ -22,7 +22,7 @@ pub struct Hold {
     pub without: Vec<Matrix7>,
     /// Information of what is known beforehand.
     pub prior: Matrix7,
-    /// The scale, where it was given; then the chart's motion is rigid.
+    /// The scale, where one was given. The chart's motion is rigid where it is held.
     pub given_scale: Option<GivenScale>,
     /// What a freedom must be held to, metres at the chart's radius.
     pub accuracy_m: f64,
@@ -67,6 +67,12 @@ impl GivenScale {
 }
 
 impl Hold {
+    /// Whether the data tell a scale, and it is the given one.
+    pub fn agrees_with_given_scale(&self, limits: &VerdictLimits) -> bool {
+        let agrees = |s: GivenScale| s.bits >= limits.margin_bits() && !s.is_contradicted(self.chart.radius, limits);
+        self.given_scale.is_some_and(agrees)
+    }
+
     /// The freedoms that are not given, the loosest first.
     pub fn directions(&self) -> Vec<HeldDirection> {
         let spectrum = self.chart.spectrum(&self.information);
@@ -105,7 +111,7 @@ impl Hold {
     }
 }
 
-/// The freedoms in words, the loosest first; a given scale stands at the end.
+/// The freedoms in words, the loosest first; a given scale that is held stands at the end.
 pub fn freedoms(hold: &Hold, limits: &VerdictLimits) -> Vec<Freedom> {
     let r = hold.chart.radius;
     let in_words = |d: HeldDirection| {
@@ -121,7 +127,8 @@ pub fn freedoms(hold: &Hold, limits: &VerdictLimits) -> Vec<Freedom> {
         };
         Freedom { name, direction, sigma, unit, determined: d.determined, given: false }
     };
-    let given = hold.given_scale.map(|scale| Freedom {
+    let held = hold.given_scale.filter(|_| hold.chart.motion == Motion::Rigid);
+    let given = held.map(|scale| Freedom {
         name: "scale".to_owned(),
         direction: Vector3::zeros(),
         sigma: 0.0,

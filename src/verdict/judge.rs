@@ -49,6 +49,8 @@ pub struct Ruling {
     pub reason: String,
     pub alternatives: Vec<Alternative>,
     pub certainty: Certainty,
+    /// Whether the data, sure of the pose, deny the scale that was given.
+    pub scale_is_denied: bool,
 }
 
 /// Everything that a verdict reads.
@@ -80,6 +82,7 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
                 .to_owned(),
             alternatives: Vec::new(),
             certainty: Certainty { false_alarm: limits.false_alarm, ..Certainty::default() },
+            scale_is_denied: false,
         };
     };
     let directions = hold.directions();
@@ -87,8 +90,10 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
     let alternatives = alternatives(best, &others, hold);
     let certainty = certainty(evidence, &others, limits);
     let serious: Vec<&Rival> = others.iter().copied().filter(|r| is_serious(r, best, limits)).collect();
-    let contradicted = hold.given_scale.filter(|scale| scale.is_contradicted(hold.chart.radius, limits));
-    let (verdict, reason) = if let Some(scale) = contradicted.filter(|scale| scale.bits >= certainty.needed_bits) {
+    let is_denied =
+        |scale: &GivenScale| scale.is_contradicted(hold.chart.radius, limits) && scale.bits >= certainty.needed_bits;
+    let denied = hold.given_scale.filter(is_denied);
+    let (verdict, reason) = if let Some(scale) = denied {
         (Verdict::Undetermined, contradicted_reason(&scale))
     } else if certainty.bits < certainty.needed_bits {
         (Verdict::Failed, failed_reason(&certainty, evidence))
@@ -101,7 +106,7 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
     } else {
         (Verdict::Aligned, aligned_reason(best, &others, &certainty, hold, limits))
     };
-    Ruling { verdict, reason, alternatives, certainty }
+    Ruling { verdict, reason, alternatives, certainty, scale_is_denied: denied.is_some() }
 }
 
 /// Whether the evidence leaves room for a rival: within the start's reach where the lead over it is less than chance may give, beyond it

@@ -184,7 +184,7 @@ pub struct SearchLimits {
     pub fed_share: f64,
     /// Patches that lie on the city: the others are trees, cars, and houses that the model lacks. Chosen: half.
     pub on_city: f64,
-    /// Time to draw one pair and to score one pose on the ranking probes, microseconds. Measured by `cargo bench --bench search` on one
+    /// Time to draw one pair and to score one pose (on 200 probes, when these ranked), microseconds. Measured by `cargo bench --bench search` on one
     /// core of a shared EPYC, 2026-11-30; their ratio matters.
     pub pair_us: f64,
     pub score_us: f64,
@@ -347,8 +347,8 @@ pub struct UncertaintyLimits {
     pub front_sigma_m: f64,
     pub piece_sigma_m: f64,
     /// ... of the reconstruction's bending, as a share of its radius. Derived: reconstructions bend by 0.1 to 0.5 % of their extent at
-    /// most; two radii, and half of the most as root mean square. Measured: with 0.1 % rendered scenes, which do not bend, come out by a third better, but
-    /// generated ones that do are called surer than they are.
+    /// most; two radii, and half of the most as root mean square. Measured: with 0.05 % four rendered scenes, which do not bend, come out better by
+    /// a tenth (one by a half); with 0.1 % a generated one that does is `aligned` 1.1 m off at 0.15 m stated.
     pub bending_share: f64,
     /// How many observations these are worth. Chosen: little, so that data decide where there are any.
     pub building_worth: f64,
@@ -362,8 +362,8 @@ pub struct UncertaintyLimits {
     pub lids_sigma_m: f64,
     pub roofs_sigma_m: f64,
     /// Degrees of freedom of the tails of buildings, fronts, pieces and points. Chosen: between Cauchy's one and the four of Lange, Little and
-    /// Taylor (1989). Measured on 36 generated captures: with 8, and a gate of half a vote for the pose, errors are 0.31 m in the mean where
-    /// these give 0.23 m.
+    /// Taylor (1989). Measured on 36 generated captures, a gate of two units: 0.26 m of error in the mean, where 8 with a gate of half a unit for the
+    /// pose gave 0.31 m.
     pub tails: f64,
     /// Fewest buildings whose scatter is asked. Derived: as many as a pose has unknowns, and one.
     pub fewest_left_out: usize,

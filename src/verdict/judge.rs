@@ -8,9 +8,10 @@
 //! | aligned | otherwise |
 //!
 //! Method       Bayes: a pose with b bits of evidence is 2^b times as likely as before the data were seen. Among so many distinct poses chance gives
-//!              one such a lead with a chance of their number times 2^-b; each rival is as likely as its own bits, and the start's,
-//!              say. The chance that the best is wrong is held against the false alarms that are allowed: one number decides all
-//! Source       a-contrario test: Desolneux, Moisan, Morel 2000; the union bound is Bonferroni's
+//!              one such a lead; the false alarms that are allowed are shared out among them as the start finds them likely, so that
+//!              a pose of share w needs log2(1/w) bits more. Each rival is as likely as its own bits, and the start's, say. The
+//!              chance that the best is wrong is held against the false alarms that are allowed: one number decides all
+//! Source       a-contrario test: Desolneux, Moisan, Morel 2000; weighted union bound: Genovese, Roeder, Wasserman 2006
 //!
 //! Differences along freedoms that nothing holds do not count. Beyond three sigmas the start rules a pose out unless that explains
 //! more: a start may be wrong, but where two poses explain the same (the halves of a symmetric block), only the start can tell.
@@ -127,8 +128,9 @@ fn differs(a: &Rival, b: &Rival, hold: &Hold, directions: &[HeldDirection], limi
 fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> Certainty {
     let best = &evidence.rivals[0];
     let within: Vec<&&Rival> = others.iter().filter(|r| !r.beyond_start).collect();
-    let chosen_from = 1 + within.iter().filter(|r| !r.by_chance).count();
-    let search_bits = (chosen_from as f64).log2();
+    // The share that the start gives to the best among all that the search chose from.
+    let tried = within.iter().filter(|r| !r.by_chance).map(|r| (r.bits_of_start - best.bits_of_start).exp2());
+    let search_bits = (1.0 + tried.sum::<f64>()).log2();
     // Odds against the pose: chance among all that were tried, and each rival.
     let chance = (search_bits - best.bits).exp2();
     let of_rivals: f64 = within.iter().map(|r| (r.all_bits() - best.all_bits()).exp2()).sum();
@@ -379,6 +381,18 @@ mod tests {
         assert_eq!([9.9, 10.0].map(|bits| verdict(bits, 0)), [Verdict::Failed, Verdict::Aligned]);
         assert_eq!([12.9, 13.0].map(|bits| verdict(bits, 7)), [Verdict::Failed, Verdict::Aligned]);
         assert_eq!(ruling(&[], &hold(None)).verdict, Verdict::Failed);
+    }
+
+    #[test]
+    fn a_pose_that_the_start_finds_unlikely_among_those_tried_needs_more_evidence() {
+        let needed = |of_best: f64, of_other: f64| {
+            let best = Rival { bits_of_start: of_best, ..rival([0.0; 3], 12.0) };
+            let other = Rival { bits_of_start: of_other, ..rival([5.0, 0.0, 0.0], -20.0) };
+            ruling(&[best, other], &hold(None)).certainty.needed_bits
+        };
+        // A share of 8 in 9 costs a sixth of a bit, one of 1 in 9 three.
+        assert!((needed(-1.0, -4.0) - 10.0 - (9.0f64 / 8.0).log2()).abs() < 0.04, "{}", needed(-1.0, -4.0));
+        assert!((needed(-4.0, -1.0) - 10.0 - 9.0f64.log2()).abs() < 0.04, "{}", needed(-4.0, -1.0));
     }
 
     #[test]

@@ -72,7 +72,7 @@ pub struct Alignment {
 pub struct Certainty {
     /// How much likelier is what the cloud meets in the city under the pose than under poses fitted to other places: log2.
     pub bits: f64,
-    /// log2 of the number of distinct poses among which it is the best.
+    /// log2 of one over the share that the start gives to it among the distinct poses of which it is the best: of equally likely ones, their number.
     pub search_bits: f64,
     /// What the bits must reach: those of the search and of the false alarms that are allowed.
     pub needed_bits: f64,

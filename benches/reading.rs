@@ -8,8 +8,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use cityweld::city::{CityOptions, read_city};
-use cityweld::reconstruction::read_reconstruction;
+use cityweld::{CityOptions, read_city, read_reconstruction};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const IMAGES: usize = 400;

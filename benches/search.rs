@@ -3,16 +3,13 @@
 //!
 //! `cargo bench --bench search`; [`SearchLimits::pair_us`] (a draw by its planes) and [`SearchLimits::score_us`] are told by it.
 //!
-//! [`SearchLimits::pair_us`]: cityweld::limits::SearchLimits::pair_us
-//! [`SearchLimits::score_us`]: cityweld::limits::SearchLimits::score_us
+//! [`SearchLimits::pair_us`]: cityweld::internals::SearchLimits::pair_us
+//! [`SearchLimits::score_us`]: cityweld::internals::SearchLimits::score_us
 
-use cityweld::correspondence::{PoseSearch, Sampler, Scene};
-use cityweld::geometry::{Similarity, Start, StartSigmas, Vector3};
-use cityweld::limits::Limits;
-use cityweld::planes::{PreparedCity, Upright, patches};
-use cityweld::robust::{Motion, Problem, Random};
+use cityweld::internals::{Limits, Motion, PoseSearch, Problem, Random, Sampler, Scene, Upright, patches};
 use cityweld::solvers::{Sought, Up};
 use cityweld::synthetic::{Block, CloudOptions, Offset};
+use cityweld::{PreparedCity, Similarity, Start, StartSigmas, Vector3};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// Poses that a measurement goes round, so that no branch is learned by heart.

@@ -5,13 +5,10 @@
 use std::error::Error;
 use std::path::Path;
 
-use cityweld::city::{CityOptions, read_city};
-use cityweld::export::{CityCounts, InputSummary, SfmCounts, write_alignment};
-use cityweld::format::read_start;
-use cityweld::imagery::{SuperpixelOptions, SuperpixelSource, lift_superpixels};
-use cityweld::planes::PreparedCity;
-use cityweld::reconstruction::read_reconstruction;
-use cityweld::{AlignOptions, align};
+use cityweld::{
+    AlignOptions, CityCounts, CityOptions, InputSummary, PreparedCity, SfmCounts, SuperpixelOptions, SuperpixelSource,
+    align, lift_superpixels, read_city, read_reconstruction, read_start, write_alignment,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");

@@ -7,11 +7,10 @@ use std::error::Error;
 use std::ops::Range;
 use std::path::Path;
 
-use cityweld::export::write_merge;
-use cityweld::geometry::{Rotation3, Similarity, Vector3};
-use cityweld::imagery::{SuperpixelOptions, SuperpixelSource, lift_superpixels_of};
-use cityweld::merging::{MergeOptions, Part, merge};
-use cityweld::reconstruction::{ImageIndex, PointIndex, Reconstruction, read_reconstruction};
+use cityweld::{
+    ImageIndex, MergeOptions, Part, PointIndex, Reconstruction, Rotation3, Similarity, SuperpixelOptions,
+    SuperpixelSource, Vector3, lift_superpixels_of, merge, read_reconstruction, write_merge,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
@@ -30,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let shared = whole.images[1].name.clone();
     let mut parts = Vec::new();
     for (name, sfm) in ["west", "east"].into_iter().zip(sfms) {
-        let is_shared = |image: &cityweld::reconstruction::Image| image.name == shared;
+        let is_shared = |image: &cityweld::Image| image.name == shared;
         let superpixels = lift_superpixels_of(&sfm, &is_shared, &labels, &SuperpixelOptions::default(), &|_, _| ())?;
         println!("{name}: {} images, {} points", sfm.images.len(), sfm.points.len());
         parts.push(Part { name: name.into(), sfm, superpixels: Some(superpixels), anchor: None });

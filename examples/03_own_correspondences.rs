@@ -5,9 +5,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use cityweld::city::{CityModel, CityOptions, Facet, read_city};
-use cityweld::geometry::{Rotation3, Similarity, Vector3};
 use cityweld::solvers::{Row, Sought, linear_least_squares, refine};
+use cityweld::{CityModel, CityOptions, Facet, Rotation3, Similarity, Vector3, read_city};
 
 /// Facets that the points lie on, and points on each.
 const FACETS: usize = 40;

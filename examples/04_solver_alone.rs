@@ -2,8 +2,8 @@
 //!
 //!     cargo run --release --example 04_solver_alone
 
-use cityweld::geometry::{Rotation3, Similarity, Vector3};
 use cityweld::solvers::{Row, sim3_3211};
+use cityweld::{Rotation3, Similarity, Vector3};
 
 fn main() {
     // Ground, two walls and a roof: unit normals and offsets, metres. `normal . x + offset = 0` on the plane.

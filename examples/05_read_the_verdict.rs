@@ -5,12 +5,10 @@
 use std::error::Error;
 use std::path::Path;
 
-use cityweld::city::{CityModel, CityOptions, read_city};
-use cityweld::format::read_start;
-use cityweld::planes::PreparedCity;
-use cityweld::reconstruction::read_reconstruction;
-use cityweld::verdict::{Alignment, Verdict};
-use cityweld::{AlignOptions, align};
+use cityweld::{
+    AlignOptions, Alignment, CityModel, CityOptions, PreparedCity, Verdict, align, read_city, read_reconstruction,
+    read_start,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");

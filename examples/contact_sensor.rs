@@ -7,10 +7,10 @@
 //!
 //! `cargo run --release --example contact_sensor [SEED]`
 
-use cityweld::correspondence::Graph;
-use cityweld::geometry::{Matrix3, Rotation3, Similarity, Vector3};
+use cityweld::internals::Graph;
 use cityweld::solvers::scene::{Chance, angle_between_rad, pose};
 use cityweld::solvers::{Row, Sought, refine, solve_minimal};
+use cityweld::{Matrix3, Rotation3, Similarity, Vector3};
 
 /// Edge of the solid: some 100 mm.
 const EDGE_MM: f64 = 100.0;

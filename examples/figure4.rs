@@ -3,9 +3,9 @@
 //! `cargo run --release --example figure4 [TRIALS] [FOLDER]` prints the table and writes `figure4.csv`,
 //! `figure4_rotation.svg` and `figure4_position.svg` to FOLDER (default `target/figure4`).
 
-use cityweld::geometry::{Point3, Similarity};
 use cityweld::solvers::scene::{Chance, SIDE, angle_between_rad, pose};
 use cityweld::solvers::{Row, Sought, linear_least_squares, refine, solve_minimal};
+use cityweld::{Point3, Similarity};
 
 /// Noise of each coordinate, as a share of the cube's side.
 pub const NOISE: [f64; 5] = [0.005, 0.01, 0.02, 0.03, 0.05];

@@ -12,11 +12,11 @@ use std::collections::HashMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use cityweld::city::{CityModel, CityOptions, FacetId, read_city};
-use cityweld::geometry::{Matrix3, Point3, Similarity, Vector3};
-use cityweld::imagery::{LabelMap, Labels, SuperpixelOptions, cut_superpixels};
-use cityweld::planes::{CityPlanes, PlaneId, city_planes};
-use cityweld::reconstruction::{Image, Reconstruction, read_reconstruction};
+use cityweld::internals::{CityPlanes, PlaneId, city_planes};
+use cityweld::{
+    CityModel, CityOptions, FacetId, Image, LabelMap, Labels, Matrix3, Point3, Reconstruction, Similarity,
+    SuperpixelOptions, Vector3, cut_superpixels, read_city, read_reconstruction,
+};
 use rayon::prelude::*;
 use serde_json::Value;
 

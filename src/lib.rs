@@ -1,26 +1,105 @@
 //! cityweld sets structure-from-motion (SfM) reconstructions into polyhedral city models, and onto each other.
 //!
-//! The rooms stand in the order in which data flows through them; each imports only from rooms above it
-//! (`ARCHITECTURE.md` says why, `tests/layering.rs` holds the list).
+//! ```text
+//! city files ──► read_city ──► CityModel ──► PreparedCity ──┐
+//! COLMAP, PLY ─► read_reconstruction ──► Reconstruction ────┤
+//! labels, photographs ─► lift_superpixels ──────────────────┼─► align ──► Alignment ──► write_alignment
+//! a coarse pose ─► read_start ──► Start ──► AlignOptions ───┘
+//!
+//! reconstructions ──► Part ──► merge ──► Merge ──► write_merge
+//! ```
+//!
+//! | To | use |
+//! |---|---|
+//! | set a reconstruction into a city | [`align()`], [`AlignOptions`], [`Up`]; what comes back: [`Alignment`] |
+//! | know how sure it is | [`Verdict`], [`Certainty`], [`Freedom`], [`Alternative`], [`ModelErrors`], [`Support`] |
+//! | read a city model | [`read_city`], [`CityOptions`], [`CityModel`], [`PreparedCity`] |
+//! | read a reconstruction and a start | [`read_reconstruction`], [`Reconstruction`], [`read_start`], [`Start`] |
+//! | use label images or photographs | [`lift_superpixels`], [`SuperpixelSource`], [`SuperpixelOptions`] |
+//! | join reconstructions | [`merge`], [`Part`], [`MergeOptions`]; what comes back: [`Merge`] |
+//! | write results | [`write_alignment`], [`write_merge`], [`write_colmap`], [`write_ply`], [`output`] |
+//! | solve point-to-plane problems of one's own | [`solvers`] |
+//! | make scenes with known truth | [`synthetic`] |
+//!
+//! Frames stand in names: `city_from_sfm` takes coordinates of the reconstruction to those of the city. Lengths are metres of the
+//! city, angles radians where the name does not say otherwise. The same input and seed give the same bytes on any number of threads.
 #![forbid(unsafe_code)]
 
-pub mod limits;
-pub mod geometry;
-pub mod format;
-pub mod city;
-pub mod reconstruction;
-pub mod imagery;
+mod limits;
+mod geometry;
+mod format;
+mod city;
+mod reconstruction;
+mod imagery;
 pub mod solvers;
-pub mod robust;
-pub mod planes;
-pub mod correspondence;
-pub mod evidence;
-pub mod uncertainty;
-pub mod verdict;
-pub mod merging;
-pub mod export;
+mod robust;
+mod planes;
+mod correspondence;
+mod evidence;
+mod uncertainty;
+mod verdict;
+mod merging;
+mod export;
 pub mod synthetic;
 
 mod align;
 
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
+
+// Alignment.
 pub use align::{AlignOptions, Progress, Up, align};
+pub use verdict::{
+    Alignment, Alternative, Certainty, Freedom, ModelErrors, PlaneEvidence, SearchSummary, Support, Verdict,
+};
+
+// City, reconstruction, start.
+pub use city::{
+    CityDefect, CityError, CityModel, CityOptions, CityPlace, CityUp, CityWarning, Facet, FacetId, ObjectId, read_city,
+};
+pub use format::read_start;
+pub use geometry::{Start, StartError, StartSigmas};
+pub use planes::PreparedCity;
+pub use reconstruction::{
+    CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, ReconstructionError, read_reconstruction,
+};
+
+// Label images and photographs.
+pub use imagery::{
+    ImageryError, LabelMap, Labels, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, cut_superpixels,
+    lift_superpixels, lift_superpixels_of,
+};
+
+// Merging.
+pub use merging::{Account, Anchor, Edge, EdgeSource, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
+
+// Results as files.
+pub use export::colmap::write_colmap;
+pub use export::ply::write_ply;
+pub use export::{CityCounts, InputSummary, SfmCounts, alignment_report, merge_report, write_alignment, write_merge};
+
+// Geometry and least squares.
+pub use geometry::{Camera, CameraModel, Matrix3, Point3, Rotation3, Similarity, Vector3};
+
+/// Folders of results as the program writes them: OUT appears whole or not at all; what a city's planes look like; an earlier alignment
+/// written again.
+pub mod output {
+    pub use crate::export::{
+        Discard, Formats, Lie, Output, OutputError, OutputKind, Replace, UnpackedFile, planes_report, write_placed,
+        write_planes_glb,
+    };
+    pub use crate::format::{StoredAlignment, read_alignment};
+}
+
+/// What tests and benchmarks of this package look into; nothing here is promised.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::correspondence::{Graph, PoseSearch, Sampler, Scene};
+    pub use crate::export::gltf::{Placed, Scene as GltfScene, write_scene};
+    pub use crate::format::colmap::{Encoding, RigRecord};
+    pub use crate::limits::*;
+    pub use crate::planes::{CityPlanes, PlaneId, Upright, city_planes, patches};
+    pub use crate::reconstruction::WarningKind;
+    pub use crate::robust::{Chart, Matrix7, Motion, NormalEquations, Problem, Random, tukey_weight};
+}

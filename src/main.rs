@@ -1,9 +1,7 @@
-//! Parse, run, exit code.
+//! The program `cityweld`: what was typed goes to [`cityweld::cli`].
 
 use std::process::ExitCode;
 
-mod cli;
-
 fn main() -> ExitCode {
-    cli::run()
+    cityweld::cli::run()
 }

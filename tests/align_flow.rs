@@ -1,13 +1,11 @@
 //! The whole alignment on a small made-up block: houses, ground, a cloud with noise and clutter, a start that is off.
 
-use cityweld::city::CityModel;
-use cityweld::geometry::{Point3, Start, StartSigmas, Vector3};
-use cityweld::limits::Limits;
-use cityweld::planes::{PreparedCity, patches};
-use cityweld::reconstruction::Reconstruction;
+use cityweld::internals::{Limits, patches};
 use cityweld::synthetic::{Block, CaptureOptions, CloudOptions, Move, Offset, Ring, Station, Survey, sfm_from_city};
-use cityweld::verdict::{Alignment, Verdict};
-use cityweld::{AlignOptions, Up, align};
+use cityweld::{
+    AlignOptions, Alignment, CityModel, Point3, PreparedCity, Reconstruction, Start, StartSigmas, Up, Vector3, Verdict,
+    align,
+};
 
 fn block(with_ground: bool) -> Block {
     Block::four_houses().with_ground(with_ground)
@@ -346,7 +344,7 @@ fn the_covariance_is_about_the_centre_of_the_scene_and_holds_the_sigmas_of_the_f
         let unit = [r, r, r, 1.0, 1.0, 1.0, r];
         let in_metres = nalgebra::SMatrix::<f64, 7, 7>::from_fn(|i, j| alignment.covariance[i][j] * unit[i] * unit[j]);
         let mut of_covariance: Vec<f64> = in_metres.symmetric_eigenvalues().iter().map(|v| v.max(0.0).sqrt()).collect();
-        let in_metres = |f: &cityweld::verdict::Freedom| match f.unit {
+        let in_metres = |f: &cityweld::Freedom| match f.unit {
             "m" => f.sigma,
             "deg" => f.sigma.to_radians() * r,
             _ => f.sigma * r,

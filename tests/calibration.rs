@@ -3,8 +3,8 @@
 #[path = "../examples/calibration/runs.rs"]
 mod runs;
 
+use cityweld::Verdict;
 use cityweld::synthetic::{Errand, Outcome, Setting};
-use cityweld::verdict::Verdict;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 

@@ -5,11 +5,10 @@ mod pieces;
 
 use std::path::Path;
 
-use cityweld::export::colmap::write_colmap;
-use cityweld::format::read_start;
-use cityweld::geometry::{Rotation3, Similarity, Vector3};
-use cityweld::merging::{MergeOptions, MergeVerdict, Part, merge};
-use cityweld::reconstruction::read_reconstruction;
+use cityweld::{
+    MergeOptions, MergeVerdict, Part, Rotation3, Similarity, Vector3, merge, read_reconstruction, read_start,
+    write_colmap,
+};
 use needs::pycolmap;
 use pieces::piece;
 
@@ -49,8 +48,8 @@ fn pycolmap_opens_the_moved_model_and_projects_as_before() {
     assert_eq!(before[..3], after[..3], "images, points, observations");
     // A similarity leaves every projection where it is; the sample's own points are rounded to 1e-6 units.
     assert!((before[3] - after[3]).abs() < 1e-6, "mean reprojection error {} px, was {} px", after[3], before[3]);
-    let center = city_from_sfm.apply(&cityweld::geometry::Point3::new(before[4], before[5], before[6]));
-    let found = cityweld::geometry::Point3::new(after[4], after[5], after[6]);
+    let center = city_from_sfm.apply(&cityweld::Point3::new(before[4], before[5], before[6]));
+    let found = cityweld::Point3::new(after[4], after[5], after[6]);
     assert!((center - found).norm() < 1e-6, "the camera stands at {found}, expected {center}");
 }
 

@@ -4,10 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cityweld::export::colmap::write_colmap;
-use cityweld::export::ply::write_ply;
-use cityweld::format::colmap::Encoding;
-use cityweld::reconstruction::{PointIndex, Reconstruction, WarningKind, read_reconstruction};
+use cityweld::internals::{Encoding, WarningKind};
+use cityweld::{PointIndex, Reconstruction, read_reconstruction, write_colmap, write_ply};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

@@ -3,10 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use cityweld::export::colmap::write_colmap;
-use cityweld::export::ply::write_ply;
-use cityweld::geometry::{Rotation3, Similarity, Vector3};
-use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+use cityweld::{Reconstruction, Rotation3, Similarity, Vector3, read_reconstruction, write_colmap, write_ply};
 use proptest::prelude::*;
 
 /// What the files of a text model say, in words that may be any.
@@ -128,7 +125,7 @@ fn the_id_that_marks_no_point_is_refused_in_text_and_binary() {
     assert!(message.contains("18446744073709551615, which marks keypoints without a point"), "{message}");
     let words = Words { point_id: u64::MAX - 1, ..Words::plain() };
     let mut read = words.read().unwrap();
-    read.colmap.as_mut().unwrap().encoding = cityweld::format::colmap::Encoding::Binary;
+    read.colmap.as_mut().unwrap().encoding = cityweld::internals::Encoding::Binary;
     let folder = tempfile::tempdir().unwrap();
     write_colmap(folder.path(), &read).unwrap();
     assert_eq!(read_reconstruction(folder.path()).unwrap().point_ids, [u64::MAX - 1]);
@@ -175,7 +172,7 @@ fn a_move_beyond_the_largest_numbers_is_refused_by_name() {
 
 #[test]
 fn names_that_an_encoding_cannot_hold_are_not_written() {
-    use cityweld::format::colmap::Encoding;
+    use cityweld::internals::Encoding;
     let read = Words::plain().read().unwrap();
     for (encoding, name) in [
         (Encoding::Text, "a\nb.jpg".to_owned()),

@@ -4,12 +4,9 @@ mod needs;
 
 use std::path::{Path, PathBuf};
 
-use cityweld::city::{CityModel, CityOptions, read_city};
-use cityweld::export::gltf::{Placed, Scene, write_scene};
-use cityweld::export::write_planes_glb;
-use cityweld::format::read_start;
-use cityweld::planes::city_planes;
-use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+use cityweld::internals::{GltfScene as Scene, Placed, city_planes, write_scene};
+use cityweld::output::write_planes_glb;
+use cityweld::{CityModel, CityOptions, Reconstruction, read_city, read_reconstruction, read_start};
 use needs::gltf_validator;
 
 const SCRIPT: &str = "

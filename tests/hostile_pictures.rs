@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use cityweld::geometry::{Camera, CameraModel};
-use cityweld::imagery::{ImageryError, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels};
-use cityweld::reconstruction::{Image, Observation, PointIndex, Reconstruction};
+use cityweld::{
+    Camera, CameraModel, Image, ImageryError, LiftedSuperpixels, Observation, PointIndex, Reconstruction,
+    SuperpixelOptions, SuperpixelSource, lift_superpixels,
+};
 
 /// A model of one image `name` of a camera of that size.
 fn model(name: &str, (width_px, height_px): (u64, u64)) -> Reconstruction {

@@ -3,11 +3,8 @@
 
 use std::sync::OnceLock;
 
-use cityweld::planes::PreparedCity;
-use cityweld::reconstruction::Reconstruction;
 use cityweld::synthetic::{Assessment, Block, Case, Errand, Levels, Setting, resampled};
-use cityweld::verdict::Alignment;
-use cityweld::{AlignOptions, align};
+use cityweld::{AlignOptions, Alignment, PreparedCity, Reconstruction, align};
 use rayon::prelude::*;
 
 /// A scene, and what is said of it as it is.

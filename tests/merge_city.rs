@@ -5,8 +5,7 @@ mod pieces;
 use std::path::Path;
 use std::process::Command;
 
-use cityweld::format::read_start;
-use cityweld::geometry::{Rotation3, Similarity, Vector3};
+use cityweld::{Rotation3, Similarity, Vector3, read_start};
 use pieces::{blurred, of_sample, piece, sample, share_off, similarity, write_part};
 use serde_json::{Value, json};
 

@@ -7,15 +7,12 @@ mod pieces;
 use std::path::Path;
 use std::process::Command;
 
-use cityweld::export::colmap::write_colmap;
-use cityweld::export::merge_report;
-use cityweld::geometry::{Camera, CameraModel, Point3, Rotation3, Similarity, Vector3};
-use cityweld::merging::{Anchor, MergeOptions, MergeVerdict, Part, merge};
-use cityweld::reconstruction::{
-    CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, read_reconstruction,
+use cityweld::internals::{Chart, Matrix7};
+use cityweld::{
+    Anchor, Camera, CameraIndex, CameraModel, Freedom, Image, ImageIndex, MergeOptions, MergeVerdict, Observation,
+    Part, Point3, PointIndex, Reconstruction, Rotation3, Similarity, Support, Vector3, Verdict, merge, merge_report,
+    read_reconstruction, write_colmap,
 };
-use cityweld::robust::{Chart, Matrix7};
-use cityweld::verdict::{Freedom, Support, Verdict};
 use json_schema::keeps;
 use pieces::mirrored;
 use serde_json::Value;
@@ -315,7 +312,7 @@ fn keeps_the_rigs_and_frames_of_both_parts() {
     let read = read_reconstruction(room.path()).unwrap();
     assert!(read.warnings.is_empty(), "{:?}", read.warnings);
     let (before, after) = (rig.colmap.unwrap(), read.colmap.unwrap());
-    let cameras_in_rigs = |rigs: &[cityweld::format::colmap::RigRecord]| {
+    let cameras_in_rigs = |rigs: &[cityweld::internals::RigRecord]| {
         rigs.iter().filter(|r| !r.others.is_empty()).map(|r| 1 + r.others.len()).max()
     };
     assert_eq!(cameras_in_rigs(&before.rigs.unwrap()), cameras_in_rigs(&after.rigs.unwrap()));

@@ -8,8 +8,7 @@ mod pieces;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cityweld::geometry::{Rotation3, Similarity, Vector3};
-use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+use cityweld::{Reconstruction, Rotation3, Similarity, Vector3, read_reconstruction};
 use needs::shared;
 use pieces::{another_place, mirrored, piece, sample, stretched, write_part};
 use serde_json::Value;

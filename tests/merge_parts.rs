@@ -7,8 +7,7 @@ mod pieces;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cityweld::geometry::{Point3, Rotation3, Similarity, Vector3};
-use cityweld::reconstruction::{Reconstruction, read_reconstruction};
+use cityweld::{Point3, Reconstruction, Rotation3, Similarity, Vector3, read_reconstruction};
 use needs::shared;
 use pieces::{blurred, piece, sample, share_off, similarity, write_part};
 use serde_json::Value;

@@ -5,11 +5,10 @@ mod needs;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cityweld::export::colmap::write_colmap;
-use cityweld::export::ply::write_ply;
-use cityweld::geometry::{Point3, Rotation3, Similarity, Vector3};
-use cityweld::reconstruction::{PointIndex, Reconstruction, read_reconstruction};
 use cityweld::synthetic::{Block, CloudOptions};
+use cityweld::{
+    Point3, PointIndex, Reconstruction, Rotation3, Similarity, Vector3, read_reconstruction, write_colmap, write_ply,
+};
 use needs::{pycolmap, shared};
 
 fn subfolders(folder: &Path) -> Vec<PathBuf> {

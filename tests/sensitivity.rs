@@ -5,13 +5,12 @@
 
 use std::sync::OnceLock;
 
-use cityweld::limits::{
+use cityweld::internals::{
     ContenderLimits, EvidenceLimits, ExposureLimits, Limits, PatchLimits, RefinementLimits, SearchLimits, SightLimits,
     UncertaintyLimits, UpLimits, VerdictLimits, WalkLimits,
 };
-use cityweld::planes::PreparedCity;
 use cityweld::synthetic::{Assessment, Case, Errand, Levels, Outcome, Repeated, Setting};
-use cityweld::{AlignOptions, align};
+use cityweld::{AlignOptions, PreparedCity, align};
 use rayon::prelude::*;
 
 const FACTORS: [f64; 2] = [0.8, 1.2];

@@ -3,7 +3,7 @@
 //!
 //! `cargo test --release --test solver_accuracy -- --ignored --nocapture` runs 100,000 instances each.
 
-use cityweld::geometry::Similarity;
+use cityweld::Similarity;
 use cityweld::solvers::scene::{Chance, angle_between_rad, relative_residual, sample, up};
 use cityweld::solvers::{Row, Sought, Up, solve_minimal};
 

@@ -5,10 +5,10 @@ mod contact_sensor;
 #[path = "../examples/figure4.rs"]
 mod figure4;
 
-use cityweld::geometry::{Point3, Similarity, Vector3};
-use cityweld::robust::{Chart, Motion, NormalEquations, tukey_weight};
+use cityweld::internals::{Chart, Motion, NormalEquations, tukey_weight};
 use cityweld::solvers::scene::{Chance, SIDE};
 use cityweld::solvers::{Row, Sought, refine};
+use cityweld::{Point3, Similarity, Vector3};
 use figure4::{METHODS, Method, NOISE, Scene, mean_errors};
 
 fn errors(name: &str, noise: f64) -> (f64, f64) {

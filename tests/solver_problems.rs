@@ -2,11 +2,11 @@
 
 mod needs;
 
-use cityweld::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 use cityweld::solvers::primitives::{ObjectPrimitive, SensorPrimitive, rows_of};
 use cityweld::solvers::problem::{Refusal, parse_problem, solve_json};
 use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, pose, sample, up};
 use cityweld::solvers::{Degeneracy, Row, Solution, Sought, Up, condition_at, solve, solve_minimal};
+use cityweld::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 use needs::shared;
 use serde_json::Value;
 
@@ -208,7 +208,7 @@ fn made(
     chance: &mut Chance,
     pair: Pair,
     centre: Option<Vector3<f64>>,
-    object_from_sensor: &cityweld::geometry::Similarity,
+    object_from_sensor: &cityweld::Similarity,
 ) -> (SensorPrimitive, ObjectPrimitive) {
     let sensor_from_object = object_from_sensor.inverse();
     let through = centre.unwrap_or_else(|| chance.in_cube());

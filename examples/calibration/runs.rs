@@ -1,9 +1,7 @@
 //! Runs: the program asked about one case after the other, and what its answers were worth.
 
-use cityweld::city::CityModel;
-use cityweld::planes::PreparedCity;
 use cityweld::synthetic::{Assessment, Case, Errand, Fault, Levels, Setting};
-use cityweld::{AlignOptions, align};
+use cityweld::{AlignOptions, CityModel, PreparedCity, align};
 
 /// Every fourth capture shows one fault alone.
 const ALONE: u64 = 4;

@@ -1,7 +1,7 @@
 //! The tables that a calibration prints, in Markdown.
 
+use cityweld::Verdict;
 use cityweld::synthetic::{Errand, Levels, Outcome, Setting};
-use cityweld::verdict::Verdict;
 
 use crate::rates::{Rate, quantile};
 use crate::runs::Run;

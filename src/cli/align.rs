@@ -1,12 +1,12 @@
 //! `cityweld align`
 
+use crate::city::read_city;
+use crate::export::{CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, write_alignment};
+use crate::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
+use crate::planes::PreparedCity;
+use crate::reconstruction::{Reconstruction, read_reconstruction};
+use crate::verdict::Verdict;
 use anyhow::Result;
-use cityweld::city::read_city;
-use cityweld::export::{CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, write_alignment};
-use cityweld::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
-use cityweld::planes::PreparedCity;
-use cityweld::reconstruction::{Reconstruction, read_reconstruction};
-use cityweld::verdict::Verdict;
 
 use super::args::AlignArgs;
 use super::plan::{AlignPlan, file_name};
@@ -24,7 +24,7 @@ pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<
     let inputs = Inputs::read(plan, session)?;
     let progress = |stage, done, all| voice.bar.show(stage, done, all);
     let superpixels = inputs.superpixels.as_ref();
-    let mut alignment = cityweld::align(&inputs.city, &inputs.sfm, superpixels, &plan.options, &progress);
+    let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &plan.options, &progress);
     voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
     alignment.warnings.splice(0..0, inputs.warnings(plan));
 

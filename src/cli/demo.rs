@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use crate::export::{OutputKind, UnpackedFile};
+use crate::format::escaped;
+use crate::limits::Limits;
 use anyhow::{Context, Result};
-use cityweld::export::{OutputKind, UnpackedFile};
-use cityweld::format::escaped;
-use cityweld::limits::Limits;
 
 use super::align::carry_out;
 use super::args::{AlignArgs, Chance, CityUpArg, DemoArgs, UpArg};

@@ -1,10 +1,10 @@
 //! `cityweld export`
 
+use crate::city::read_city;
+use crate::export::{Formats, OutputKind, write_placed};
+use crate::format::{StoredAlignment, read_alignment};
+use crate::reconstruction::read_reconstruction;
 use anyhow::{Result, ensure};
-use cityweld::city::read_city;
-use cityweld::export::{Formats, OutputKind, write_placed};
-use cityweld::format::{StoredAlignment, read_alignment};
-use cityweld::reconstruction::read_reconstruction;
 
 use super::args::{ExportArgs, FormatArg};
 use super::plan::{CityFiles, existing_sfm, keeps_inputs};

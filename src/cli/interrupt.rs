@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use cityweld::export::{Discard, Output, OutputError, OutputKind, Replace};
+use crate::export::{Discard, Output, OutputError, OutputKind, Replace};
 
 /// 128 + SIGINT, as shells have it.
 const EXIT_INTERRUPTED: i32 = 130;

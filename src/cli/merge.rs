@@ -3,18 +3,18 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, ensure};
-use cityweld::AlignOptions;
-use cityweld::city::read_city;
-use cityweld::export::{OutputKind, merge_report, write_merge};
-use cityweld::format::read_start;
-use cityweld::imagery::{
+use crate::AlignOptions;
+use crate::city::read_city;
+use crate::export::{OutputKind, merge_report, write_merge};
+use crate::format::read_start;
+use crate::imagery::{
     ImageryError, ImageryWarning, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels,
     lift_superpixels_of,
 };
-use cityweld::merging::{Anchor, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
-use cityweld::planes::PreparedCity;
-use cityweld::reconstruction::{Image, read_reconstruction};
+use crate::merging::{Anchor, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
+use crate::planes::PreparedCity;
+use crate::reconstruction::{Image, read_reconstruction};
+use anyhow::{Result, ensure};
 
 use super::args::{EvidenceArg, MergeArgs};
 use super::plan::{CityFiles, existing_reconstruction, keeps_inputs};
@@ -185,7 +185,7 @@ fn anchor(
 ) -> Result<Anchor> {
     let options = AlignOptions { seed: session.common.seed, ..AlignOptions::new(read_start(start)?) };
     let progress = |stage, done, all| session.voice.bar.show(stage, done, all);
-    let found = cityweld::align(city, &part.sfm, superpixels, &options, &progress);
+    let found = crate::align(city, &part.sfm, superpixels, &options, &progress);
     let anchor = Anchor::of(&found, &part.sfm, *options.start.city_from_sfm());
     session.voice.detail(&format!("{}: {}", part.name, anchor.reason));
     Ok(anchor)

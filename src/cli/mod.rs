@@ -18,9 +18,9 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::export::{Output, OutputError, OutputKind, Replace};
+use crate::format::escaped;
 use anyhow::Context;
-use cityweld::export::{Output, OutputError, OutputKind, Replace};
-use cityweld::format::escaped;
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::city::{CityOptions, CityUp};
+use crate::format::read_start;
+use crate::geometry::Vector3;
+use crate::imagery::SuperpixelSource;
+use crate::{AlignOptions, Up};
 use anyhow::{Context, Result, bail, ensure};
-use cityweld::city::{CityOptions, CityUp};
-use cityweld::format::read_start;
-use cityweld::geometry::Vector3;
-use cityweld::imagery::SuperpixelSource;
-use cityweld::{AlignOptions, Up};
 
 use super::args::{AlignArgs, CityUpArg, UpArg};
 use super::roles::{self, Given, Role};

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use crate::city::read_city;
+use crate::export::{Output, OutputKind, planes_report, write_planes_glb};
+use crate::planes::city_planes;
 use anyhow::{Context, Result, bail};
-use cityweld::city::read_city;
-use cityweld::export::{Output, OutputKind, planes_report, write_planes_glb};
-use cityweld::planes::city_planes;
 
 use super::args::PlanesArgs;
 use super::plan::{CityFiles, keeps_inputs};

@@ -6,8 +6,8 @@ use std::io::{ErrorKind, Result, Write};
 use std::path::Path;
 use std::time::Instant;
 
+use crate::format::{escaped, escaped_json};
 use anyhow::Context;
-use cityweld::format::{escaped, escaped_json};
 
 use super::args::Common;
 use super::progress::Bar;

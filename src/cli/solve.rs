@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::format::{JsonKind, read_text, text_from};
+use crate::solvers::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
 use anyhow::{Context, Result, bail};
-use cityweld::format::{JsonKind, read_text, text_from};
-use cityweld::solvers::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
 
 use super::args::SolveArgs;
 use super::{Outcome, Session};

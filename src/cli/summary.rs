@@ -3,12 +3,12 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
-use cityweld::city::CityModel;
-use cityweld::export::Lie;
-use cityweld::format::escaped;
-use cityweld::merging::{Account, Merge};
-use cityweld::planes::CityPlanes;
-use cityweld::verdict::{Alignment, Freedom, Verdict};
+use crate::city::CityModel;
+use crate::export::Lie;
+use crate::format::escaped;
+use crate::merging::{Account, Merge};
+use crate::planes::CityPlanes;
+use crate::verdict::{Alignment, Freedom, Verdict};
 
 /// A title and rows of a name and a value; names of files and parts are in both.
 struct Table {

@@ -21,14 +21,12 @@ mod votes;
 mod walk;
 
 pub use candidates::{Candidate, candidate_at, candidates, joined, settled};
-pub use cliques::{Cliques, Graph};
+pub use cliques::Graph;
 pub use contenders::{Place, contenders};
-pub use economy::{Prospect, cheapest, prospects};
-pub use pose_search::{PoseSearch, largest_shift};
+pub use pose_search::PoseSearch;
 pub use prior::Prior;
 pub use refine::{ProbeOnPlane, Refined, Refiner};
-pub use sampler::{Pair, Sample, Sampler};
+pub use sampler::Sampler;
 pub use scene::Scene;
 pub use search::{Hypotheses, NO_SOLVER, search};
 pub use votes::{LevelPatch, Votes};
-pub use walk::{hop, settle, slide};

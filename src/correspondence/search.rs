@@ -111,7 +111,7 @@ pub(super) fn sought(scene: &Scene) -> Sought {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::correspondence::largest_shift;
+    use crate::correspondence::pose_search::largest_shift;
     use crate::correspondence::test_scene::Made;
     use crate::solvers::Configuration;
     use crate::synthetic::{Offset, Survey};

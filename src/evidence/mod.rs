@@ -8,5 +8,4 @@ mod hidden;
 mod outcomes;
 mod witnesses;
 
-pub use bits::Weighed;
 pub use contest::{Contest, Contestant};

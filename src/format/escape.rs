@@ -11,6 +11,7 @@ pub fn escaped(text: &str) -> impl fmt::Display + '_ {
 /// JSON text with what would steer a terminal written as JSON's own escapes, as in `\u202e`: it says the same.
 ///
 /// JSON leaves such characters plain in its strings, all but the first 32; elsewhere it has none but line ends.
+#[cfg(feature = "cli")]
 pub fn escaped_json(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     for c in json.chars() {
@@ -60,6 +61,7 @@ mod tests {
         assert_eq!(shown("\u{202e}gpj.\u{2066}\u{200f}"), "\\u{202e}gpj.\\u{2066}\\u{200f}");
     }
 
+    #[cfg(feature = "cli")]
     #[test]
     fn json_says_the_same_without_steering_a_terminal() {
         let name = "a\u{202e}gpj.\u{9b}31m\x1b[2J\n\u{7f} Straße";

@@ -12,9 +12,12 @@ pub mod ply;
 mod start;
 mod text;
 
-pub use alignment::{Spread, StoredAlignment, read_alignment};
-pub use escape::{escaped, escaped_json};
+pub use alignment::{StoredAlignment, read_alignment};
+pub use escape::escaped;
+#[cfg(feature = "cli")]
+pub use escape::escaped_json;
 pub use kind::JsonKind;
-pub use placement::PlacementError;
 pub use start::read_start;
-pub use text::{LARGEST_TEXT_BYTES, read_text, text_from};
+#[cfg(feature = "cli")]
+pub use text::text_from;
+pub use text::{LARGEST_TEXT_BYTES, read_text};

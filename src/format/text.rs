@@ -14,6 +14,7 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
 }
 
 /// The text of a stream, up to `limit` bytes.
+#[cfg(feature = "cli")]
 pub fn text_from(stream: impl Read, limit: u64) -> io::Result<String> {
     text_of(read_at_most(stream, 0, limit)?)
 }

@@ -12,8 +12,8 @@ mod start;
 
 pub use camera::{Camera, CameraModel};
 pub use plane::Plane;
-pub use rays::{RayCaster, Sight};
+pub use rays::RayCaster;
 pub use similarity::{NotASimilarity, Similarity};
 pub use start::{Start, StartError, StartSigmas};
 
-pub use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
+pub use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};

@@ -14,11 +14,9 @@ mod up_votes;
 mod upright;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
-pub use cloud::{LocalSurface, local_surfaces};
 pub use directions::Facing;
 pub use facet_grid::{FacetGrid, Hit, Look, Probe};
-pub use fit::{FittedPlane, fit_plane, fit_plane_robustly};
-pub use patches::{Patch, Patches, RejectedGroup, patches};
+pub use fit::{FittedPlane, fit_plane_robustly};
+pub use patches::{Patches, patches};
 pub use prepared_city::PreparedCity;
-pub use surface::CitySurface;
-pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start, up_candidates};
+pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start};

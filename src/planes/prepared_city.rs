@@ -16,7 +16,7 @@ use crate::city::{CityModel, FacetId};
 use crate::geometry::Point3;
 use crate::limits::{ExposureLimits, Limits};
 
-/// A city model with all that alignments ask of it; read it as its [`CitySurface`].
+/// A city model with all that alignments ask of it; read it as the surface that it is.
 pub struct PreparedCity {
     surface: CitySurface,
     exposure: Exposure,

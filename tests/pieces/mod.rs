@@ -5,11 +5,12 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use cityweld::export::colmap::write_colmap;
-use cityweld::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
-use cityweld::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction, read_reconstruction};
 use cityweld::solvers::scene::Chance;
 use cityweld::synthetic::{Block, CaptureOptions, Ring};
+use cityweld::{
+    Image, ImageIndex, Matrix3, Point3, PointIndex, Reconstruction, Rotation3, Similarity, Vector3,
+    read_reconstruction, write_colmap,
+};
 use serde_json::Value;
 
 /// A file or folder of the sample.

@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use cityweld::format::JsonKind;
-use cityweld::format::colmap::missing_files;
-use cityweld::format::file::open_regular;
-use cityweld::format::gltf::is_glb;
-use cityweld::format::ply::is_ply;
+use crate::format::JsonKind;
+use crate::format::colmap::missing_files;
+use crate::format::file::open_regular;
+use crate::format::gltf::is_glb;
+use crate::format::ply::is_ply;
 
 use super::Role;
 

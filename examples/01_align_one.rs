@@ -17,14 +17,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let city = PreparedCity::new(read_city(&sample.join("city.obj"), &[], &CityOptions::default())?);
     let sfm = read_reconstruction(&sample.join("sfm"))?;
     let labels = SuperpixelSource::Labels(sample.join("labels"));
-    let superpixels = lift_superpixels(&sfm, &labels, &SuperpixelOptions::default(), &|_, _| ())?;
+    let superpixels = lift_superpixels(&sfm, &labels, &SuperpixelOptions::default(), &())?;
     let start = read_start(&sample.join("start.json"))?;
 
-    let alignment = align(&city, &sfm, Some(&superpixels), &AlignOptions::new(start), &|_, _, _| ());
+    let alignment = align(&city, &sfm, Some(&superpixels), &AlignOptions::new(start), &())?;
     println!("{}: {}", alignment.verdict.word(), alignment.reason);
 
     // The similarity maps the reconstruction to absolute city coordinates.
-    if let (Some(city_from_sfm), Some(point)) = (&alignment.best, sfm.points.first()) {
+    if let (Some(city_from_sfm), Some(point)) = (&alignment.best_candidate, sfm.points.first()) {
         println!(
             "scale {:.4} m per unit; the first point stands at {:.3}",
             city_from_sfm.scale,

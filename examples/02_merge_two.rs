@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut parts = Vec::new();
     for (name, sfm) in ["west", "east"].into_iter().zip(sfms) {
         let is_shared = |image: &cityweld::Image| image.name == shared;
-        let superpixels = lift_superpixels_of(&sfm, &is_shared, &labels, &SuperpixelOptions::default(), &|_, _| ())?;
+        let superpixels = lift_superpixels_of(&sfm, &is_shared, &labels, &SuperpixelOptions::default(), &())?;
         println!("{name}: {} images, {} points", sfm.images.len(), sfm.points.len());
         parts.push(Part { name: name.into(), sfm, superpixels: Some(superpixels), anchor: None });
     }

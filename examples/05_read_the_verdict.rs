@@ -19,20 +19,20 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     for (name, city) in [("its walls alone", walls_of(&city)), ("the whole city", city)] {
         println!("{name}:");
-        tell(&align(&PreparedCity::new(city), &sfm, None, &options, &|_, _, _| ()));
+        tell(&align(&PreparedCity::new(city), &sfm, None, &options, &())?);
     }
     Ok(())
 }
 
 fn tell(alignment: &Alignment) {
     println!("  {}: {}", alignment.verdict.word(), alignment.reason);
-    match (alignment.verdict, &alignment.best) {
+    match (alignment.verdict, &alignment.best_candidate) {
         // Only this one is to be built upon; its sigmas say how far.
         (Verdict::Aligned, Some(pose)) => println!("  use it: scale {:.4}", pose.scale),
         // Sound but for some freedoms: good where those do not matter, or where something else fixes them.
         (Verdict::Undetermined, Some(_)) => {
             for freedom in alignment.freedoms.iter().filter(|freedom| !freedom.determined) {
-                println!("  open: {}, sigma {:.2} {}", freedom.name, freedom.sigma, freedom.unit);
+                println!("  open: {}, sigma {:.2} {}", freedom.name, freedom.sigma, freedom.unit.symbol());
             }
         }
         // One of these is right; a better start or a person decides.

@@ -26,6 +26,7 @@
 #![forbid(unsafe_code)]
 
 mod limits;
+mod observer;
 mod geometry;
 mod format;
 mod city;
@@ -43,15 +44,19 @@ mod export;
 pub mod synthetic;
 
 mod align;
+mod error;
 
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
 
 // Alignment.
-pub use align::{AlignOptions, Progress, Up, align};
+pub use align::{AlignOptions, Up, align};
+pub use error::Error;
+pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{
-    Alignment, Alternative, Certainty, Freedom, ModelErrors, PlaneEvidence, SearchSummary, Support, Verdict,
+    Alignment, Alternative, Certainty, Freedom, FreedomKind, FreedomUnit, ModelErrors, PlaneEvidence, SearchSummary,
+    Support, Verdict,
 };
 
 // City, reconstruction, start.

@@ -371,7 +371,8 @@ pub struct UncertaintyLimits {
     pub told_sigmas: f64,
     /// ... and as large as this. Chosen: what a survey of buildings would note.
     pub told_m: f64,
-    /// A freedom is confirmed where it is held to this many times what is asked when any one front is left out. Chosen.
+    /// A freedom is confirmed where it is held to this many times what is asked when any one front is left out, whatever the other freedoms
+    /// then are. Chosen.
     pub confirmed_times: f64,
 }
 

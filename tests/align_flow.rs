@@ -35,16 +35,16 @@ fn start_off(offset: &Offset) -> Start {
 }
 
 fn options(seed: u64) -> AlignOptions {
-    AlignOptions { seed, ..AlignOptions::new(start_off(&OFF)) }
+    AlignOptions::new(start_off(&OFF)).with_seed(seed)
 }
 
 fn run(with_ground: bool, options: &AlignOptions) -> Alignment {
-    align(&prepared(with_ground), &survey(with_ground).sfm, None, options, &|_, _, _| ())
+    align(&prepared(with_ground), &survey(with_ground).sfm, None, options, &()).unwrap()
 }
 
 /// Largest error over the block's corners, horizontally and along up.
 fn errors(alignment: &Alignment) -> (f64, f64) {
-    let Move { level_m, up_m } = block(true).move_by(&(alignment.best.unwrap() * sfm_from_city()));
+    let Move { level_m, up_m } = block(true).move_by(&(alignment.best_candidate.unwrap() * sfm_from_city()));
     (level_m, up_m)
 }
 
@@ -64,10 +64,10 @@ fn finds_the_block_from_photographs_with_their_cameras_and_superpixels() {
     let start = Start::with_default_sigmas(block.off(&OFF) * survey.city_from_sfm);
     let city = PreparedCity::new(block.city().unwrap());
     for superpixels in [None, Some(survey.superpixels(60.0))] {
-        let options = AlignOptions { start, ..options(0) };
-        let alignment = align(&city, &survey.sfm, superpixels.as_ref(), &options, &|_, _, _| ());
+        let options = AlignOptions::new(start);
+        let alignment = align(&city, &survey.sfm, superpixels.as_ref(), &options, &()).unwrap();
         assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
-        let off = block.move_by(&(alignment.best.unwrap() * survey.city_from_sfm.inverse()));
+        let off = block.move_by(&(alignment.best_candidate.unwrap() * survey.city_from_sfm.inverse()));
         assert!(off.level_m < 0.03 && off.up_m < 0.03, "{off:?}");
     }
 }
@@ -84,14 +84,14 @@ fn walls_alone_leave_the_height_open() {
 }
 
 fn with_scale(scale: f64, start: Start) -> Alignment {
-    run(true, &AlignOptions { start, fixed_scale: Some(scale), ..options(0) })
+    run(true, &AlignOptions::new(start).with_fixed_scale(scale))
 }
 
 #[test]
 fn holds_a_scale_that_is_given() {
     let alignment = with_scale(true_scale(), start_off(&OFF));
     assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
-    assert_eq!(alignment.best.unwrap().scale.to_bits(), true_scale().to_bits());
+    assert_eq!(alignment.best_candidate.unwrap().scale.to_bits(), true_scale().to_bits());
     let (level, up) = errors(&alignment);
     assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
     let scale: Vec<_> = alignment.freedoms.iter().filter(|f| f.name == "scale").collect();
@@ -106,7 +106,7 @@ fn a_wrong_scale_that_is_given_is_told_beside_that_of_the_data_and_the_best_pose
         let alignment = with_scale(wrong, start_off(&OFF));
         assert_eq!(alignment.verdict, Verdict::Undetermined, "{share}: {}", alignment.reason);
         // A pose of the wrong scale would be wrong everywhere.
-        let off = alignment.best.unwrap().scale / true_scale() - 1.0;
+        let off = alignment.best_candidate.unwrap().scale / true_scale() - 1.0;
         assert!(off.abs() < 1e-3, "{share}: {off}, {}", alignment.reason);
         let (level, up) = errors(&alignment);
         assert!(level < 0.03 && up < 0.03, "{share}: off by {level} m, {up} m");
@@ -124,7 +124,7 @@ fn a_given_scale_replaces_the_start_s_about_the_start_s_centre() {
     let doubled = start_off(&Offset { scale: 2.0, ..OFF });
     let alignment = with_scale(true_scale(), doubled);
     assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
-    assert_eq!(alignment.best.unwrap().scale.to_bits(), true_scale().to_bits());
+    assert_eq!(alignment.best_candidate.unwrap().scale.to_bits(), true_scale().to_bits());
     let (level, up) = errors(&alignment);
     assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
 }
@@ -134,7 +134,7 @@ fn leaning(seed: u64) -> AlignOptions {
     let leans = start_off(&Offset { tilt_rad: [0.25, -0.17], ..OFF });
     let sigmas = StartSigmas { tilt_rad: 10.0 * DEGREE, ..StartSigmas::default() };
     let start = Start::new(*leans.city_from_sfm(), sigmas).unwrap();
-    AlignOptions { start, up: Up::None, ..options(seed) }
+    AlignOptions::new(start).with_up(Up::None).with_seed(seed)
 }
 
 #[test]
@@ -147,11 +147,11 @@ fn turns_freely_where_up_is_not_used() {
 
 #[test]
 fn the_result_names_the_configuration_that_searched() {
-    let scaled = |up| AlignOptions { fixed_scale: Some(true_scale()), up, ..options(0) };
+    let scaled = |up| options(0).with_fixed_scale(true_scale()).with_up(up);
     let solver = |options: &AlignOptions| run(true, options).search.solver;
     assert_eq!(solver(&options(0)), "upright similarity (2,1,1,1)");
     assert_eq!(solver(&scaled(Up::Auto)), "upright rigid (2,1,1)");
-    assert_eq!(solver(&AlignOptions { up: Up::None, ..options(0) }), "similarity (3,2,1,1)");
+    assert_eq!(solver(&options(0).with_up(Up::None)), "similarity (3,2,1,1)");
     // Three planes are fewer than four; which of the configurations on three is cheapest is for the data to say.
     let rigid = solver(&scaled(Up::None));
     assert!(rigid.starts_with("rigid (3,") && rigid.matches(',').count() == 2, "{rigid}");
@@ -160,8 +160,8 @@ fn the_result_names_the_configuration_that_searched() {
 #[test]
 fn a_single_wall_feeds_no_search_that_turns_freely() {
     let wall = Reconstruction { points: survey(false).sfm.points[..150].to_vec(), ..Reconstruction::default() };
-    let free = AlignOptions { up: Up::None, ..options(0) };
-    let alignment = align(&prepared(true), &wall, None, &free, &|_, _, _| ());
+    let free = options(0).with_up(Up::None);
+    let alignment = align(&prepared(true), &wall, None, &free, &()).unwrap();
     assert_eq!((alignment.verdict, alignment.search.solver.as_str()), (Verdict::Failed, "none"));
     assert_eq!(alignment.search.samples, 0);
 }
@@ -183,15 +183,15 @@ fn gives_the_same_numbers_for_any_number_of_threads() {
         pool.install(|| run(true, &options(3)))
     };
     let (one, three) = (with(1), with(3));
-    assert_eq!(one.best, three.best);
+    assert_eq!(one.best_candidate, three.best_candidate);
     assert_eq!(one.covariance, three.covariance);
     assert_eq!(one.reason, three.reason);
 }
 
 /// What is said where nothing can be found, and that it was said before any search.
 fn refusal(city: &PreparedCity, reconstruction: &Reconstruction, start: Start) -> String {
-    let alignment = align(city, reconstruction, None, &AlignOptions { start, ..options(0) }, &|_, _, _| ());
-    assert_eq!((alignment.verdict, alignment.best), (Verdict::Failed, None), "{}", alignment.reason);
+    let alignment = align(city, reconstruction, None, &AlignOptions::new(start), &()).unwrap();
+    assert_eq!((alignment.verdict, alignment.best_candidate), (Verdict::Failed, None), "{}", alignment.reason);
     assert_eq!((alignment.search.samples, alignment.search.solver.as_str()), (0, "none"), "{}", alignment.reason);
     assert!(alignment.freedoms.is_empty() && alignment.alternatives.is_empty() && alignment.evidence.is_empty());
     assert_finite(&alignment);
@@ -230,7 +230,7 @@ fn a_start_that_cannot_reach_the_city_is_refused_with_both_places_and_the_distan
     // The same start with sigmas that reach so far is searched, and finds nothing worse than a verdict.
     let vast = StartSigmas { position_m: 1e7, ..StartSigmas::default() };
     let start = Start::new(far, vast).unwrap();
-    let alignment = run(true, &AlignOptions { start, ..options(0) });
+    let alignment = run(true, &AlignOptions::new(start));
     assert!(alignment.search.samples > 0, "{}", alignment.reason);
     assert_finite(&alignment);
 }
@@ -239,7 +239,7 @@ fn a_start_that_cannot_reach_the_city_is_refused_with_both_places_and_the_distan
 fn assert_finite(alignment: &Alignment) {
     let mut numbers = vec![alignment.radius, alignment.support.rms_m, alignment.support.median_m];
     numbers.extend(alignment.origin.iter().chain(alignment.center.iter()).chain(alignment.covariance.iter().flatten()));
-    for found in alignment.best.iter().chain(alignment.alternatives.iter().map(|a| &a.city_from_sfm)) {
+    for found in alignment.best_candidate.iter().chain(alignment.alternatives.iter().map(|a| &a.city_from_sfm)) {
         numbers.push(found.scale);
         numbers.extend(found.rotation.matrix().iter().chain(found.translation.iter()));
     }
@@ -264,10 +264,10 @@ fn a_start_with_sigmas_of_zero_gives_finite_numbers_everywhere() {
     ] {
         let start = Start::new(*start.city_from_sfm(), zero).unwrap();
         for with_ground in [true, false] {
-            let alignment = run(with_ground, &AlignOptions { start, fixed_scale, up, ..options(0) });
+            let alignment = run(with_ground, &AlignOptions::new(start).with_fixed_scale(fixed_scale).with_up(up));
             assert_finite(&alignment);
             // What is sure may be refused for a millimetre, but nothing far from it is found.
-            if let Some(best) = alignment.best {
+            if let Some(best) = alignment.best_candidate {
                 let off = block(true).move_by(&(best * start.city_from_sfm().inverse()));
                 assert!(off.level_m < 1.5 && off.up_m < 1.5, "{off:?}: {}", alignment.reason);
             }
@@ -279,7 +279,7 @@ fn a_start_with_sigmas_of_zero_gives_finite_numbers_everywhere() {
 fn sigmas_of_ten_thousand_kilometres_find_the_block() {
     let vast = StartSigmas { position_m: 1e7, height_m: 1e7, ..StartSigmas::default() };
     let start = Start::new(*start_off(&OFF).city_from_sfm(), vast).unwrap();
-    let alignment = run(true, &AlignOptions { start, ..options(0) });
+    let alignment = run(true, &AlignOptions::new(start));
     assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
     let (level, up) = errors(&alignment);
     assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
@@ -291,7 +291,7 @@ fn points_that_are_given_twice_or_in_another_order_change_nothing() {
     let survey = survey(true).sfm;
     let found = |points: Vec<Point3<f64>>| {
         let cloud = Reconstruction { points, ..Reconstruction::default() };
-        align(&prepared(true), &cloud, None, &options(2), &|_, _, _| ())
+        align(&prepared(true), &cloud, None, &options(2), &()).unwrap()
     };
     let once = found(survey.points.clone());
     let twice = found([survey.points.clone(), survey.points.clone()].concat());
@@ -300,7 +300,10 @@ fn points_that_are_given_twice_or_in_another_order_change_nothing() {
     let shuffled = found((0..7).flat_map(|k| survey.points.iter().skip(k).step_by(7)).copied().collect());
     assert_eq!(once.verdict, Verdict::Aligned, "{}", once.reason);
     for other in [&twice, &backwards, &shuffled] {
-        assert_eq!((once.best, once.verdict, &once.reason), (other.best, other.verdict, &other.reason));
+        assert_eq!(
+            (once.best_candidate, once.verdict, &once.reason),
+            (other.best_candidate, other.verdict, &other.reason)
+        );
         assert_eq!(once.covariance, other.covariance);
     }
     assert!(once.warnings.iter().all(|w| !w.contains("place of another")), "{:?}", once.warnings);
@@ -310,14 +313,10 @@ fn points_that_are_given_twice_or_in_another_order_change_nothing() {
 
 #[test]
 fn one_prepared_city_serves_two_alignments_in_either_order_as_fresh_ones_would() {
-    let jobs = [
-        (true, options(0)),
-        (false, options(1)),
-        (true, AlignOptions { fixed_scale: Some(true_scale()), ..options(2) }),
-    ];
+    let jobs = [(true, options(0)), (false, options(1)), (true, options(2).with_fixed_scale(true_scale()))];
     let on = |city: &PreparedCity, (with_ground, options): &(bool, AlignOptions)| {
-        let alignment = align(city, &survey(*with_ground).sfm, None, options, &|_, _, _| ());
-        (alignment.best, alignment.covariance, alignment.reason, alignment.search.samples)
+        let alignment = align(city, &survey(*with_ground).sfm, None, options, &()).unwrap();
+        (alignment.best_candidate, alignment.covariance, alignment.reason, alignment.search.samples)
     };
     let fresh: Vec<_> = jobs.iter().map(|job| on(&prepared(true), job)).collect();
     let shared = prepared(true);
@@ -335,18 +334,22 @@ fn the_covariance_is_about_the_centre_of_the_scene_and_holds_the_sigmas_of_the_f
     let wide = StartSigmas { position_m: 100.0, height_m: 100.0, heading_rad: 3.0, tilt_rad: 1.0, log_scale: 1.0 };
     for fixed_scale in [None, Some(true_scale())] {
         let start = Start::new(*start_off(&OFF).city_from_sfm(), wide).unwrap();
-        let alignment = run(true, &AlignOptions { start, fixed_scale, ..options(0) });
+        let alignment = run(true, &AlignOptions::new(start).with_fixed_scale(fixed_scale));
         assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
         let r = alignment.radius;
         let middle = patches(&survey(true).sfm, None, &Limits::default().patches).middle();
-        assert!((alignment.best.unwrap().apply(&middle) - alignment.center).norm() < 1e-6, "{}", alignment.center);
+        assert!(
+            (alignment.best_candidate.unwrap().apply(&middle) - alignment.center).norm() < 1e-6,
+            "{}",
+            alignment.center
+        );
         // Turns and scale as lengths at the radius: then the freedoms are the axes of the covariance.
         let unit = [r, r, r, 1.0, 1.0, 1.0, r];
         let in_metres = nalgebra::SMatrix::<f64, 7, 7>::from_fn(|i, j| alignment.covariance[i][j] * unit[i] * unit[j]);
         let mut of_covariance: Vec<f64> = in_metres.symmetric_eigenvalues().iter().map(|v| v.max(0.0).sqrt()).collect();
         let in_metres = |f: &cityweld::Freedom| match f.unit {
-            "m" => f.sigma,
-            "deg" => f.sigma.to_radians() * r,
+            cityweld::FreedomUnit::Metre => f.sigma,
+            cityweld::FreedomUnit::Degree => f.sigma.to_radians() * r,
             _ => f.sigma * r,
         };
         let mut of_freedoms: Vec<f64> = alignment.freedoms.iter().map(in_metres).collect();
@@ -366,7 +369,7 @@ fn the_covariance_is_about_the_centre_of_the_scene_and_holds_the_sigmas_of_the_f
 fn a_start_that_is_exactly_right_and_sure_of_it_is_aligned() {
     let exact = StartSigmas { position_m: 0.0, height_m: 0.0, heading_rad: 0.0, tilt_rad: 0.0, log_scale: 0.0 };
     let start = Start::new(sfm_from_city().inverse(), exact).unwrap();
-    let alignment = run(true, &AlignOptions { start, ..options(0) });
+    let alignment = run(true, &AlignOptions::new(start));
     assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
     let (level, up) = errors(&alignment);
     assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");

@@ -17,7 +17,7 @@ fn model(name: &str, (width_px, height_px): (u64, u64)) -> Reconstruction {
 }
 
 fn lift(source: SuperpixelSource, name: &str, camera: (u64, u64)) -> Result<LiftedSuperpixels, ImageryError> {
-    lift_superpixels(&model(name, camera), &source, &SuperpixelOptions::default(), &|_, _| ())
+    lift_superpixels(&model(name, camera), &source, &SuperpixelOptions::default(), &())
 }
 
 fn labels(folder: &Path, camera: (u64, u64)) -> Result<LiftedSuperpixels, ImageryError> {

@@ -36,7 +36,7 @@ fn scenes() -> &'static [Scene] {
 
 fn aligned(case: &Case, modelled: &Block, sfm: &Reconstruction) -> Alignment {
     let city = PreparedCity::new(modelled.city().unwrap());
-    align(&city, sfm, None, &AlignOptions::new(case.request(Errand::RightPlace).start), &|_, _, _| ())
+    align(&city, sfm, None, &AlignOptions::new(case.request(Errand::RightPlace).start), &()).unwrap()
 }
 
 /// What is said of a scene that was sampled in another way, where it is something else: the verdict, or a pose that differs by more
@@ -45,10 +45,10 @@ fn changes(sampled: impl Fn(&Scene) -> Alignment + Sync) -> Vec<String> {
     let change = |scene: &Scene| {
         let other = sampled(scene);
         let points = scene.case.points();
-        let apart = Assessment::new(&other, scene.plain.best.as_ref(), &points);
+        let apart = Assessment::new(&other, scene.plain.best_candidate.as_ref(), &points);
         let (before, after) = (scene.plain.verdict, other.verdict);
         // Where nothing was found twice there is no pose to compare.
-        let none = scene.plain.best.is_none() && other.best.is_none();
+        let none = scene.plain.best_candidate.is_none() && other.best_candidate.is_none();
         let same_pose = none || apart.held_error_m <= apart.held_stated_m;
         (before != after || !same_pose).then(|| {
             format!(

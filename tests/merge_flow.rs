@@ -229,7 +229,8 @@ fn anchor(world_from_part: Similarity, verdict: Verdict) -> Anchor {
         name: "along up".into(),
         direction: Vector3::z(),
         sigma: 3.0,
-        unit: "m",
+        kind: cityweld::FreedomKind::Shift,
+        unit: cityweld::FreedomUnit::Metre,
         determined: verdict == Verdict::Aligned,
         given: false,
     };

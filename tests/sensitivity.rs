@@ -170,11 +170,10 @@ impl Task {
         let own = (limits.exposure != Limits::default().exposure).then(|| prepared(&self.case, self.errand, limits));
         let city = own.as_ref().unwrap_or(&self.city);
         let request = self.case.request(self.errand);
-        let options =
-            AlignOptions { fixed_scale: request.fixed_scale, limits: *limits, ..AlignOptions::new(request.start) };
+        let options = AlignOptions::new(request.start).with_fixed_scale(request.fixed_scale).with_limits(*limits);
         let survey = &self.case.capture.survey;
         let truth = (self.errand != Errand::ForeignTown).then_some(&survey.city_from_sfm);
-        let alignment = align(city, &survey.sfm, None, &options, &|_, _, _| ());
+        let alignment = align(city, &survey.sfm, None, &options, &()).unwrap();
         Assessment::new(&alignment, truth, &self.case.points()).outcome()
     }
 

@@ -74,12 +74,12 @@ pub fn asked(case: &Case, index: u64, fault: Option<&'static str>, errands: &[Er
     let points = case.points();
     let run = |errand: &Errand| {
         let request = case.request(*errand);
-        let options = AlignOptions { fixed_scale: request.fixed_scale, ..AlignOptions::new(request.start) };
+        let options = AlignOptions::new(request.start).with_fixed_scale(request.fixed_scale);
         let sfm = &case.capture.survey.sfm;
         let (alignment, truth) = if *errand == Errand::ForeignTown {
-            (align(&prepared(case.foreign_city().ok()?), sfm, None, &options, &|_, _, _| ()), None)
+            (align(&prepared(case.foreign_city().ok()?), sfm, None, &options, &()).unwrap(), None)
         } else {
-            (align(&city, sfm, None, &options, &|_, _, _| ()), Some(&case.capture.survey.city_from_sfm))
+            (align(&city, sfm, None, &options, &()).unwrap(), Some(&case.capture.survey.city_from_sfm))
         };
         let assessment = Assessment::new(&alignment, truth, &points);
         Some(Run { index, setting: case.setting, levels: case.levels, fault, errand: *errand, assessment })

@@ -12,6 +12,7 @@ use crate::evidence::Contest;
 use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
+use crate::observer::{Cancelled, Observer, Stage, go_on};
 use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
@@ -31,6 +32,7 @@ pub enum Up {
 
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct AlignOptions {
     /// To absolute city coordinates.
     pub start: Start,
@@ -41,7 +43,7 @@ pub struct AlignOptions {
     pub accuracy_m: Option<f64>,
     /// Same seed, same answer, whatever the number of threads.
     pub seed: u64,
-    pub limits: Limits,
+    pub(crate) limits: Limits,
 }
 
 impl AlignOptions {
@@ -49,10 +51,36 @@ impl AlignOptions {
     pub fn new(start: Start) -> AlignOptions {
         AlignOptions { start, fixed_scale: None, up: Up::Auto, accuracy_m: None, seed: 0, limits: Limits::default() }
     }
-}
 
-/// A stage of the alignment, told to whoever watches: its name and how much of it is done.
-pub type Progress<'a> = &'a (dyn Fn(&'static str, usize, usize) + Sync);
+    /// Holds the scale, metres per sfm unit; `None` leaves it free.
+    pub fn with_fixed_scale(self, metres_per_unit: impl Into<Option<f64>>) -> AlignOptions {
+        AlignOptions { fixed_scale: metres_per_unit.into(), ..self }
+    }
+
+    pub fn with_up(self, up: Up) -> AlignOptions {
+        AlignOptions { up, ..self }
+    }
+
+    /// What a freedom must be held to in order to be determined, metres at the scene's radius.
+    pub fn with_accuracy(self, accuracy_m: f64) -> AlignOptions {
+        AlignOptions { accuracy_m: Some(accuracy_m), ..self }
+    }
+
+    /// The chance of a wrong `aligned` that may be taken, between zero and one.
+    pub fn with_false_alarm(mut self, chance: f64) -> AlignOptions {
+        self.limits.verdict.false_alarm = chance;
+        self
+    }
+
+    #[doc(hidden)]
+    pub fn with_limits(self, limits: Limits) -> AlignOptions {
+        AlignOptions { limits, ..self }
+    }
+
+    pub fn with_seed(self, seed: u64) -> AlignOptions {
+        AlignOptions { seed, ..self }
+    }
+}
 
 /// Finds where the reconstruction stands in the city and judges it. `superpixels` are the evidence of labels or
 /// photographs; without them planar clusters are taken out of the cloud itself.
@@ -61,19 +89,20 @@ pub fn align(
     reconstruction: &Reconstruction,
     superpixels: Option<&LiftedSuperpixels>,
     options: &AlignOptions,
-    progress: Progress<'_>,
-) -> Alignment {
-    progress("patches", 0, 1);
+    observer: &dyn Observer,
+) -> Result<Alignment, Cancelled> {
+    observer.progress(Stage::Patches, 0, 1);
     let patches = patches(reconstruction, superpixels, &options.limits.patches);
     let start = local_start(options, &patches, city);
     if let Some(obstacle) = obstacle::find(city, reconstruction, &patches, &start, &options.limits) {
-        return report::refused(&obstacle, city, &patches, options);
+        return Ok(report::refused(&obstacle, city, &patches, options));
     }
-    progress("city", 0, 1);
-    let task = Task { city, patches: &patches, start: &start, options, progress };
-    let answer = task.answer();
+    go_on(observer)?;
+    observer.progress(Stage::City, 0, 1);
+    let task = Task { city, patches: &patches, start: &start, options, observer };
+    let answer = task.answer()?;
     let up_elsewhere = up_elsewhere(&answer.ruling, &patches, &start, options);
-    report::tell(answer, &patches, up_elsewhere, city, options)
+    Ok(report::tell(answer, &patches, up_elsewhere, city, options))
 }
 
 /// The start in the city's local frame. A scale that is given takes the place of the start's, about the cloud's middle.
@@ -93,7 +122,7 @@ struct Task<'a> {
     /// To the city's local frame; of the given scale where there is one.
     start: &'a Start,
     options: &'a AlignOptions,
-    progress: Progress<'a>,
+    observer: &'a dyn Observer,
 }
 
 /// One way of taking up, searched.
@@ -114,21 +143,21 @@ struct Outcome {
 impl<'a> Task<'a> {
     /// With the scale that was given, if one was. Where the data deny it, or cannot tell with it, what they say with the scale free is asked: a
     /// pose of the wrong scale is wrong everywhere.
-    fn answer(&self) -> Outcome {
+    fn answer(&self) -> Result<Outcome, Cancelled> {
         if self.options.fixed_scale.is_none() {
             return self.outcome(Motion::Similarity);
         }
-        let of_given = self.outcome(Motion::Rigid);
+        let of_given = self.outcome(Motion::Rigid)?;
         if of_given.found.evidence.hold.agrees_with_given_scale(&self.options.limits.verdict) {
-            return of_given;
+            return Ok(of_given);
         }
-        let free = self.outcome(Motion::Similarity);
-        if free.ruling.scale_is_denied { free } else { of_given }
+        let free = self.outcome(Motion::Similarity)?;
+        Ok(if free.ruling.scale_is_denied { free } else { of_given })
     }
 
-    fn outcome(&self, motion: Motion) -> Outcome {
-        let view = self.best_view(motion);
-        (self.progress)("evidence", 0, 1);
+    fn outcome(&self, motion: Motion) -> Result<Outcome, Cancelled> {
+        let view = self.best_view(motion)?;
+        self.observer.progress(Stage::Evidence, 0, 1);
         let surroundings = self.surroundings(&view);
         let contest = view
             .candidates
@@ -136,6 +165,7 @@ impl<'a> Task<'a> {
             .map(|best| Contest::new(&surroundings, self.patches, &best.refined, self.options.seed));
         let contestants =
             contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
+        go_on(self.observer)?;
         let refiner = Refiner::new(&view.scene);
         let given_scale = self
             .options
@@ -143,13 +173,13 @@ impl<'a> Task<'a> {
             .and_then(|_| Some(evidence::scale_of_data(&refiner, contest.as_ref()?, contestants.first()?)));
         let found = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale, self.options.accuracy_m);
         let ruling = judge(&found.evidence, &self.options.limits.verdict);
-        Outcome { ruling, found, hypotheses: view.hypotheses }
+        Ok(Outcome { ruling, found, hypotheses: view.hypotheses })
     }
 
     /// Searches under every up that there may be; the view with the best candidate, joined by the candidates of the others.
-    fn best_view(&self, motion: Motion) -> View<'a> {
+    fn best_view(&self, motion: Motion) -> Result<View<'a>, Cancelled> {
         let uprights = uprights(self.patches, self.start, self.options.up, &self.options.limits);
-        let mut views: Vec<View> = uprights.iter().map(|upright| self.view(upright, motion)).collect();
+        let mut views = uprights.iter().map(|upright| self.view(upright, motion)).collect::<Result<Vec<View>, _>>()?;
         let balance = |view: &View| view.candidates.first().map_or(f64::NEG_INFINITY, Candidate::balance);
         let at = (0..views.len()).max_by(|&a, &b| balance(&views[a]).total_cmp(&balance(&views[b])).then(b.cmp(&a)));
         let mut best = views.swap_remove(at.unwrap_or(0));
@@ -162,14 +192,15 @@ impl<'a> Task<'a> {
         if !others.is_empty() {
             best.candidates = joined(&Refiner::new(&best.scene), best.candidates, &others);
         }
-        best
+        Ok(best)
     }
 
-    fn view(&self, upright: &Upright, motion: Motion) -> View<'a> {
+    fn view(&self, upright: &Upright, motion: Motion) -> Result<View<'a>, Cancelled> {
         let scene = Scene::new(self.city, self.patches, self.start, motion, upright, &self.options.limits);
-        let hypotheses = search(&scene, self.options.seed, &|done, of| (self.progress)("search", done, of));
+        let hypotheses = search(&scene, self.options.seed, self.observer)?;
         let candidates = candidates(&Refiner::new(&scene), &hypotheses);
-        View { upright: *upright, scene, hypotheses, candidates }
+        go_on(self.observer)?;
+        Ok(View { upright: *upright, scene, hypotheses, candidates })
     }
 
     /// The scene of a view with a prior that reaches over its neighbourhood, whatever the heading.

@@ -23,7 +23,7 @@ pub(super) fn tell(
     Alignment {
         verdict: ruling.verdict,
         reason: ruling.reason + &up_elsewhere.map_or(String::new(), words_of_up),
-        best: rivals.first().map(|r| r.city_from_sfm),
+        best_candidate: rivals.first().map(|r| r.city_from_sfm),
         alternatives: ruling.alternatives,
         certainty: ruling.certainty,
         origin: city.model.origin,
@@ -60,7 +60,7 @@ pub(super) fn refused(
     Alignment {
         verdict: Verdict::Failed,
         reason: obstacle.to_string(),
-        best: None,
+        best_candidate: None,
         alternatives: Vec::new(),
         certainty: Certainty { false_alarm: options.limits.verdict.false_alarm, ..Certainty::default() },
         origin: city.model.origin,

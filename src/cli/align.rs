@@ -22,9 +22,8 @@ pub fn run(args: &AlignArgs, session: &Session) -> Result<Outcome> {
 pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<Outcome> {
     let voice = &session.voice;
     let inputs = Inputs::read(plan, session)?;
-    let progress = |stage, done, all| voice.bar.show(stage, done, all);
     let superpixels = inputs.superpixels.as_ref();
-    let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &plan.options, &progress);
+    let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &plan.options, &voice.bar)?;
     voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
     alignment.warnings.splice(0..0, inputs.warnings(plan));
 
@@ -62,8 +61,7 @@ impl Inputs {
         let superpixels = match &plan.superpixels {
             None => None,
             Some(source) => {
-                let progress = |done, all| voice.bar.show("superpixels", done, all);
-                let lifted = lift_superpixels(&sfm, source, &SuperpixelOptions::default(), &progress)?;
+                let lifted = lift_superpixels(&sfm, source, &SuperpixelOptions::default(), &voice.bar)?;
                 voice.detail(&format!("superpixels: {}", lifted.superpixels.len()));
                 Some(lifted)
             }

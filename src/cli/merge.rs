@@ -133,7 +133,7 @@ fn lift_shared(parts: &mut [Part], source: &SuperpixelSource, session: &Session)
         session.voice.bar.show("superpixels", 0, 0);
         // Both parts must see the same superpixels, whatever keypoints each of them has.
         let options = SuperpixelOptions { count: JOINING_SUPERPIXELS, by_keypoints: false };
-        part.superpixels = given(lift_superpixels_of(&part.sfm, &is_shared, source, &options, &|_, _| ()))?;
+        part.superpixels = given(lift_superpixels_of(&part.sfm, &is_shared, source, &options, &()))?;
     }
     // Where no photograph is shared, labels and photographs are for the city.
     let any_is_shared = parts_with.values().any(|count| *count > 1);
@@ -163,7 +163,7 @@ fn anchor_all(
 ) -> Result<()> {
     let Some(city) = city else { return Ok(()) };
     for (part, start) in parts.iter_mut().zip(&args.start) {
-        let lift = |source| given(lift_superpixels(&part.sfm, source, &SuperpixelOptions::default(), &|_, _| ()));
+        let lift = |source| given(lift_superpixels(&part.sfm, source, &SuperpixelOptions::default(), &()));
         let superpixels = source.map(lift).transpose()?.flatten();
         part.anchor = Some(anchor(part, superpixels.as_ref(), city, start, session)?);
     }
@@ -183,9 +183,8 @@ fn anchor(
     start: &Path,
     session: &Session,
 ) -> Result<Anchor> {
-    let options = AlignOptions { seed: session.common.seed, ..AlignOptions::new(read_start(start)?) };
-    let progress = |stage, done, all| session.voice.bar.show(stage, done, all);
-    let found = crate::align(city, &part.sfm, superpixels, &options, &progress);
+    let options = AlignOptions::new(read_start(start)?).with_seed(session.common.seed);
+    let found = crate::align(city, &part.sfm, superpixels, &options, &session.voice.bar)?;
     let anchor = Anchor::of(&found, &part.sfm, *options.start.city_from_sfm());
     session.voice.detail(&format!("{}: {}", part.name, anchor.reason));
     Ok(anchor)

@@ -4,12 +4,13 @@ use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+use crate::observer::{Observer, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// One line that is drawn anew for every stage and gone at the end.
 pub struct Bar {
     bar: ProgressBar,
-    stage: Mutex<&'static str>,
+    stage: Mutex<String>,
 }
 
 impl Bar {
@@ -20,20 +21,20 @@ impl Bar {
         if shown {
             bar.enable_steady_tick(Duration::from_millis(100));
         }
-        Bar { bar, stage: Mutex::new("") }
+        Bar { bar, stage: Mutex::new(String::new()) }
     }
 
     /// Stage `name` has done `done` of `all`; zero of `all` where that is not known.
-    pub fn show(&self, name: &'static str, done: usize, all: usize) {
+    pub fn show(&self, name: &str, done: usize, all: usize) {
         if self.bar.is_hidden() {
             return;
         }
         let mut stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
         if *stage != name {
-            *stage = name;
+            *stage = name.to_owned();
             self.bar.reset();
             self.bar.set_style(if all > 0 { measured() } else { unmeasured() });
-            self.bar.set_message(name);
+            self.bar.set_message(name.to_owned());
         }
         self.bar.set_length(all as u64);
         self.bar.set_position(done as u64);
@@ -41,6 +42,14 @@ impl Bar {
 
     pub fn clear(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+impl Observer for Bar {
+    fn progress(&self, stage: Stage, done: usize, all: usize) {
+        if !self.bar.is_hidden() {
+            self.show(&stage.to_string(), done, all);
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::export::Lie;
 use crate::format::escaped;
 use crate::merging::{Account, Merge};
 use crate::planes::CityPlanes;
-use crate::verdict::{Alignment, Freedom, Verdict};
+use crate::verdict::{Alignment, Freedom, FreedomUnit, Verdict};
 
 /// A title and rows of a name and a value; names of files and parts are in both.
 struct Table {
@@ -30,7 +30,7 @@ impl Table {
 /// Verdict, reason, scale, freedoms, support, files and time.
 pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], seconds: f64) -> String {
     let mut table = Table::new(&format!("{}: {}", alignment.verdict.word(), alignment.reason), 13);
-    if let Some(best) = &alignment.best {
+    if let Some(best) = &alignment.best_candidate {
         let what = if alignment.verdict == Verdict::Aligned { "scale" } else { "scale (best)" };
         table.row(what, format!("{:.6} m per reconstruction unit", best.scale));
     }
@@ -77,8 +77,8 @@ fn freedom_line(freedom: &Freedom) -> String {
     }
     let sigma = match freedom.unit {
         // One sigma of the logarithm is a share of the scale itself.
-        "1" => format!("{:.3} %", 100.0 * freedom.sigma),
-        unit => format!("{:.3} {unit}", freedom.sigma),
+        FreedomUnit::LogScale => format!("{:.3} %", 100.0 * freedom.sigma),
+        unit => format!("{:.3} {}", freedom.sigma, unit.symbol()),
     };
     let mark = if freedom.determined { "" } else { "   NOT determined" };
     format!("{:<32} sigma {sigma}{mark}", freedom.name)

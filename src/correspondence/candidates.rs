@@ -160,7 +160,7 @@ mod tests {
     use crate::synthetic::{Block, CloudOptions, House, Offset};
 
     fn found(scene: &Scene, seed: u64) -> Vec<Candidate> {
-        candidates(&Refiner::new(scene), &search(scene, seed, &|_, _| ()))
+        candidates(&Refiner::new(scene), &search(scene, seed, &()).unwrap())
     }
 
     fn apart_m(scene: &Scene, a: &Candidate, b: &Candidate) -> f64 {

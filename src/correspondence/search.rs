@@ -6,6 +6,7 @@ use super::refine::Refiner;
 use super::sampler::Sampler;
 use super::scene::Scene;
 use crate::geometry::{Similarity, Vector3};
+use crate::observer::{Cancelled, Observer, Stage, go_on};
 use crate::robust::{Motion, Problem, Random, Ranked, RansacOptions, ransac};
 use crate::solvers::{Sought, Up};
 
@@ -22,14 +23,14 @@ pub struct Hypotheses {
 /// What a result names where the data feed no solver.
 pub const NO_SOLVER: &str = "none";
 
-/// Searches a scene with the configuration that is expected to cost least; `progress` is told how many samples of how many.
-pub fn search(scene: &Scene, seed: u64, progress: &(dyn Fn(usize, usize) + Sync)) -> Hypotheses {
+/// Searches a scene with the configuration that is expected to cost least; the observer is told of samples.
+pub fn search(scene: &Scene, seed: u64, observer: &dyn Observer) -> Result<Hypotheses, Cancelled> {
     let limits = &scene.limits.search;
     let (sampler, sought, panel) = (Sampler::new(scene), sought(scene), scene.votes.panel(limits.ranking_probes));
     let with = |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, panel: &panel };
     let searches: Vec<PoseSearch> = sought.configurations().iter().map(with).collect();
     let Some(configuration) = cheapest(&prospects(&searches, limits), limits) else {
-        return Hypotheses { ranked: Vec::new(), solver: NO_SOLVER.to_owned(), samples: 0 };
+        return Ok(Hypotheses { ranked: Vec::new(), solver: NO_SOLVER.to_owned(), samples: 0 });
     };
     let options = RansacOptions {
         seed,
@@ -40,8 +41,12 @@ pub fn search(scene: &Scene, seed: u64, progress: &(dyn Fn(usize, usize) + Sync)
         enough_hits: limits.enough_hits,
     };
     let improving = Improving::new(scene, with(&configuration));
-    let (ranked, samples) = ransac(&improving, &options, |n| progress(n, options.most_samples));
-    Hypotheses { ranked, solver: format!("{} {configuration}", sought.name()), samples }
+    let (ranked, samples) = ransac(&improving, &options, |n| {
+        observer.progress(Stage::Search, n, options.most_samples);
+        !observer.is_cancelled()
+    });
+    go_on(observer)?;
+    Ok(Hypotheses { ranked, solver: format!("{} {configuration}", sought.name()), samples })
 }
 
 /// A search whose better poses are refined before they are ranked: a minimal sample is off by metres at the rim of a scene, where a gate
@@ -134,7 +139,7 @@ mod tests {
             most_samples: MOST_SAMPLES,
             enough_hits: 3,
         };
-        ransac(&search, &options, |_| ()).0
+        ransac(&search, &options, |_| true).0
     }
 
     const MOST_SAMPLES: usize = 32_768;
@@ -191,7 +196,7 @@ mod tests {
         let made = Made::four_houses();
         for (seed, start) in (5..).zip(starts()) {
             let scene = made.scene(&start, Motion::Similarity);
-            let found = search(&scene, seed, &|_, _| ());
+            let found = search(&scene, seed, &()).unwrap();
             assert_eq!(found.solver, "upright similarity (2,1,1,1)");
             assert!(found.samples >= made.limits.search.fewest_samples, "{}", found.samples);
             assert!(found.ranked.is_sorted_by(|a, b| a.score >= b.score) && found.ranked.len() <= 60);
@@ -208,7 +213,7 @@ mod tests {
         survey.sfm.points.truncate(150);
         survey.face_of_point.truncate(150);
         let made = Made::new(block, Survey { ..survey });
-        let found = search(&made.leaning_scene(&Offset::default(), Motion::Similarity), 0, &|_, _| ());
+        let found = search(&made.leaning_scene(&Offset::default(), Motion::Similarity), 0, &()).unwrap();
         assert_eq!((found.solver.as_str(), found.samples, found.ranked.len()), (NO_SOLVER, 0, 0));
     }
 
@@ -217,7 +222,7 @@ mod tests {
         let made = Made::four_houses();
         let with = |threads: usize, seed: u64| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let found = pool.install(|| search(&made.scene(&starts()[0], Motion::Similarity), seed, &|_, _| ()));
+            let found = pool.install(|| search(&made.scene(&starts()[0], Motion::Similarity), seed, &()).unwrap());
             let told = |r: &Ranked<Similarity>| (r.pose, r.score.to_bits(), r.hits);
             (found.ranked.iter().map(told).collect::<Vec<_>>(), found.samples)
         };

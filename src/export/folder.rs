@@ -45,7 +45,7 @@ pub fn write_alignment(
     write_file(&folder.join(REPORT_FILE), |out| out.write_all(report.as_bytes()))?;
     let mut files = vec![REPORT_FILE];
     let title = scene_title(alignment.verdict, &alignment.reason);
-    match alignment.best {
+    match alignment.best_candidate {
         Some(best) => files.extend(write_placed(folder, &title, city, reconstruction, &best, Formats::ALL)?),
         None => {
             write_scene(&folder.join(SCENE_FILE), &Scene { title: &title, city: Some(city), placed: None })?;

@@ -20,4 +20,4 @@ pub use folder::{Formats, write_alignment, write_placed};
 pub use merge_report::{merge_report, write_merge};
 pub use output::{Discard, Output, OutputError, OutputKind, Replace};
 pub use planes::{Lie, planes_report, write_planes_glb};
-pub use report::{CityCounts, InputSummary, SfmCounts, alignment_report};
+pub use report::{CityCounts, InputSummary, ReportError, SfmCounts, alignment_report};

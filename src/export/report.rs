@@ -66,7 +66,7 @@ pub enum ReportError {
 /// The report as JSON text. Keys stand in the order in which a person asks; matrices and list entries on one line.
 pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<String, ReportError> {
     check_finite(alignment)?;
-    let best = alignment.best.as_ref().map(SimilarityJson::of).transpose()?;
+    let best = alignment.best_candidate.as_ref().map(SimilarityJson::of).transpose()?;
     let (transform, best_candidate) = match alignment.verdict {
         Verdict::Aligned => (best, None),
         _ => (None, best),
@@ -221,7 +221,8 @@ pub(super) fn freedom_json(freedom: &Freedom) -> Result<Box<RawValue>, serde_jso
         determined: bool,
         given: bool,
     }
-    let Freedom { name, direction, sigma, unit, determined, given } = freedom;
+    let Freedom { kind: _, name, direction, sigma, unit, determined, given } = freedom;
+    let unit = unit.symbol();
     let (direction, sigma) = ((*direction).into(), *sigma);
     to_raw_value(&FreedomJson { name, direction, sigma, unit, determined: *determined, given: *given })
 }
@@ -258,7 +259,7 @@ fn check_finite(alignment: &Alignment) -> Result<(), ReportError> {
     let (support, errors) = (&alignment.support, &alignment.model_errors);
     let spreads = [errors.buildings, errors.fronts, errors.bending];
     let checks = [
-        ("transform", alignment.best.iter().all(similarity)),
+        ("transform", alignment.best_candidate.iter().all(similarity)),
         ("alternatives", alignment.alternatives.iter().all(|a| a.weight.is_finite() && similarity(&a.city_from_sfm))),
         ("origin", alignment.origin.iter().all(|v| v.is_finite())),
         ("center", alignment.center.iter().all(|v| v.is_finite())),
@@ -283,7 +284,7 @@ fn check_finite(alignment: &Alignment) -> Result<(), ReportError> {
 mod tests {
     use super::*;
     use crate::geometry::{Point3, Rotation3, Vector3};
-    use crate::verdict::{Alternative, SearchSummary};
+    use crate::verdict::{Alternative, FreedomKind, FreedomUnit, SearchSummary};
     use serde_json::{Value, json};
 
     fn example(verdict: Verdict) -> Alignment {
@@ -295,7 +296,7 @@ mod tests {
         Alignment {
             verdict,
             reason: "all seven freedoms are held by 23 planes".into(),
-            best: (verdict != Verdict::Failed).then_some(best),
+            best_candidate: (verdict != Verdict::Failed).then_some(best),
             alternatives: vec![Alternative { city_from_sfm: best, weight: 0.02, differs: "turned".into() }],
             certainty: Certainty { bits: 31.5, needed_bits: 12.0, probability: 0.999, ..Certainty::default() },
             origin: Vector3::new(90000.0, 435_000.0, 0.0),
@@ -307,7 +308,8 @@ mod tests {
                 name: "up".into(),
                 direction: Vector3::z(),
                 sigma: 0.04,
-                unit: "m",
+                kind: FreedomKind::Shift,
+                unit: FreedomUnit::Metre,
                 determined: true,
                 given: false,
             }],
@@ -333,7 +335,7 @@ mod tests {
     #[test]
     fn keeps_every_digit_of_the_transform() {
         let alignment = example(Verdict::Aligned);
-        let best = alignment.best.unwrap();
+        let best = alignment.best_candidate.unwrap();
         let value = report(&alignment);
         assert_eq!(value["transform"]["scale"].as_f64(), Some(best.scale));
         for row in 0..3 {

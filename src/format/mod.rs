@@ -17,6 +17,7 @@ pub use escape::escaped;
 #[cfg(feature = "cli")]
 pub use escape::escaped_json;
 pub use kind::JsonKind;
+pub use placement::PlacementError;
 pub use start::read_start;
 #[cfg(feature = "cli")]
 pub use text::text_from;

@@ -13,6 +13,7 @@ use super::photos::{decode_photo, open_photo};
 use super::size;
 use super::superpixels::{SuperpixelOptions, cut_superpixels};
 use super::{ImageryError, ImageryWarning, LabelMap, SuperpixelSource};
+use crate::observer::{Observer, Stage, go_on};
 use crate::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
 
 /// One superpixel of one image with the points whose observations fall on it.
@@ -40,15 +41,15 @@ pub struct LiftedSuperpixels {
 /// while no other is.
 const DECODING_LIMIT_BYTES: u64 = 1 << 30;
 
-/// Finds, for every superpixel of every image, the points that are seen on it. `progress` is told how many images are
-/// done, of how many. Images that see no point are not looked for.
+/// Finds, for every superpixel of every image, the points that are seen on it. The observer is told of images.
+/// Images that see no point are not looked for.
 pub fn lift_superpixels(
     reconstruction: &Reconstruction,
     source: &SuperpixelSource,
     options: &SuperpixelOptions,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    observer: &dyn Observer,
 ) -> Result<LiftedSuperpixels, ImageryError> {
-    lift_superpixels_of(reconstruction, &|_| true, source, options, progress)
+    lift_superpixels_of(reconstruction, &|_| true, source, options, observer)
 }
 
 /// [`lift_superpixels`] of those images alone that are `wanted`; the others are taken as if they were not there.
@@ -57,7 +58,7 @@ pub fn lift_superpixels_of(
     wanted: &dyn Fn(&Image) -> bool,
     source: &SuperpixelSource,
     options: &SuperpixelOptions,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    observer: &dyn Observer,
 ) -> Result<LiftedSuperpixels, ImageryError> {
     let files = find_files(reconstruction, wanted, source)?;
     let done = AtomicUsize::new(0);
@@ -68,8 +69,9 @@ pub fn lift_superpixels_of(
         .found
         .par_iter()
         .map(|(index, path)| {
+            go_on(observer)?;
             let lifted = lift_image(reconstruction, *index, path, source, options, &memory);
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, files.found.len());
+            observer.progress(Stage::Superpixels, done.fetch_add(1, Ordering::Relaxed) + 1, files.found.len());
             lifted
         })
         .collect();
@@ -256,7 +258,7 @@ mod tests {
         let images = vec![image("a.jpg", &seen_a), image("sub/b.jpg", &seen_b), image("c.jpg", &[(0.5, 0.5, Some(0))])];
         let reconstruction = Reconstruction { images, ..Reconstruction::default() };
         let source = SuperpixelSource::Labels(folder.path().to_path_buf());
-        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap();
+        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &()).unwrap();
         let flat: Vec<_> = lifted
             .superpixels
             .iter()
@@ -284,7 +286,7 @@ mod tests {
         let images = vec![image("a.jpg", &[(99.9, 60.0, Some(0)), (100.0, 60.0, Some(1))])];
         let reconstruction = Reconstruction { images, cameras: vec![camera(200, 100)], ..Reconstruction::default() };
         let source = SuperpixelSource::Labels(folder.path().to_path_buf());
-        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap();
+        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &()).unwrap();
         let flat: Vec<_> = lifted.superpixels.iter().map(|s| (s.label, s.points.clone())).collect();
         assert_eq!(flat, vec![(7, vec![PointIndex(0)]), (8, vec![PointIndex(1)])]);
         assert_eq!(lifted.warnings, vec![]);
@@ -297,7 +299,7 @@ mod tests {
         let images = vec![image("a.jpg", &[(600.0, 400.0, Some(0))])];
         let reconstruction = Reconstruction { images, cameras: vec![camera(640, 480)], ..Reconstruction::default() };
         let source = SuperpixelSource::Photos(folder.path().to_path_buf());
-        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap();
+        let lifted = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &()).unwrap();
         assert_eq!(lifted.superpixels.len(), 1);
         let scaled =
             ImageryWarning::Scaled { count: 1, example: "a.jpg".to_owned(), found: (64, 48), camera: (640, 480) };
@@ -313,7 +315,7 @@ mod tests {
         let cameras = vec![camera(200, 100), camera(100, 200)];
         let reconstruction = Reconstruction { images: vec![turned], cameras, ..Reconstruction::default() };
         let source = SuperpixelSource::Labels(folder.path().to_path_buf());
-        let error = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &|_, _| ()).unwrap_err();
+        let error = lift_superpixels(&reconstruction, &source, &SuperpixelOptions::default(), &()).unwrap_err();
         assert!(matches!(error, ImageryError::WrongShape { turned: true, .. }), "{error}");
     }
 }

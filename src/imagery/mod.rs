@@ -21,6 +21,7 @@ mod superpixels;
 use std::path::{Path, PathBuf};
 
 use crate::format::escaped;
+use crate::observer::Cancelled;
 
 pub use labels::{LabelMap, Labels};
 pub use lift::{LiftedSuperpixels, Superpixel, lift_superpixels, lift_superpixels_of};
@@ -53,7 +54,10 @@ impl SuperpixelSource {
 
 /// Why superpixels could not be had.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageryError {
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     #[error(
         "the reconstruction has no images, so {noun}s have nothing to refer to; give a COLMAP model, \
          or leave them out: {}",

@@ -168,7 +168,7 @@ fn search(pairs: &[Pair], cameras: &[CameraPair], radius: f64, seed: u64) -> Opt
         Search { pairs, scored: pairs.iter().step_by(step).collect(), bend: BEND_SHARES[1] * radius, center_b, radius };
     let options =
         RansacOptions { seed, keep: 5, best_of_block: 5, fewest_samples: 2048, most_samples: 8192, enough_hits: 20 };
-    let (ranked, _) = ransac(&search, &options, |_| ());
+    let (ranked, _) = ransac(&search, &options, |_| true);
     let by_pairs = ranked.first().map(|best| Start { pose: best.pose, score: best.score });
     let by_cameras = cameras.iter().filter_map(CameraPair::a_from_b).map(|pose| {
         let refined = refine(&Terms::of_pairs(pairs, search.bend, radius), &pose);

@@ -8,7 +8,7 @@ use super::judge::DETERMINED;
 use crate::geometry::Vector3;
 use crate::limits::Limits;
 use crate::robust::Matrix7;
-use crate::verdict::{Freedom, Hold};
+use crate::verdict::{Freedom, FreedomKind, FreedomUnit, Hold};
 
 /// In the city's frame: metres and directions by their names.
 pub(super) fn in_the_city(held: &Held) -> Vec<Freedom> {
@@ -41,21 +41,18 @@ pub(super) fn in_a_parts_frame(held: &Held) -> Vec<Freedom> {
         let part = |first: usize| Vector3::new(unit[first], unit[first + 1], unit[first + 2]);
         let (turn, shift, scale) = (part(0), part(3), unit[6].abs());
         let largest = turn.norm().max(shift.norm()).max(scale);
-        let (name, direction, sigma_in_unit, unit) = if scale == largest {
-            ("scale", Vector3::zeros(), sigma(k) / radius, "1")
+        let (kind, name, direction, sigma_in_unit, unit) = if scale == largest {
+            (FreedomKind::Scale, "scale", Vector3::zeros(), sigma(k) / radius, FreedomUnit::LogScale)
         } else if shift.norm() == largest {
-            ("shift", positive(&shift), sigma(k), FRAME_UNIT)
+            (FreedomKind::Shift, "shift", positive(&shift), sigma(k), FreedomUnit::FrameUnit)
         } else {
-            ("turn", positive(&turn), (sigma(k) / radius).to_degrees(), "deg")
+            (FreedomKind::Turn, "turn", positive(&turn), (sigma(k) / radius).to_degrees(), FreedomUnit::Degree)
         };
         let determined = own(k) <= DETERMINED * radius;
-        Freedom { name: name.to_owned(), direction, sigma: sigma_in_unit, unit, determined, given: false }
+        Freedom { kind, name: name.to_owned(), direction, sigma: sigma_in_unit, unit, determined, given: false }
     };
     order.into_iter().map(in_words).collect()
 }
-
-/// Lengths in a frame that is not metric.
-const FRAME_UNIT: &str = "frame unit";
 
 /// The unit vector along `v` whose largest component is positive.
 fn positive(v: &Vector3<f64>) -> Vector3<f64> {

@@ -78,7 +78,7 @@ impl Anchor {
 
     /// Where an alignment puts a part; `fallback` where it found nothing.
     pub fn of(alignment: &Alignment, sfm: &Reconstruction, fallback: Similarity) -> Anchor {
-        let common_from_part = alignment.best.unwrap_or(fallback);
+        let common_from_part = alignment.best_candidate.unwrap_or(fallback);
         let radius = common_from_part.scale * sigma::extent(&sfm.points).1;
         let chart = Chart::of_similarity(alignment.center, radius);
         // The report's covariance is in radians, metres and log scale.

@@ -64,7 +64,7 @@ fn search(evidence: &PlaneEvidence, seed: u64) -> Option<Similarity> {
         most_samples: SAMPLES,
         enough_hits: usize::MAX,
     };
-    let (ranked, _) = ransac(&problem, &options, |_| ());
+    let (ranked, _) = ransac(&problem, &options, |_| true);
     let refined = ranked.iter().map(|found| {
         let pose = NARROWING.iter().fold(found.pose, |pose, bend| refine(evidence, &pose, *bend));
         (score(evidence, &pose, NARROWING[2]), pose)

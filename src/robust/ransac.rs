@@ -67,11 +67,12 @@ const ROUND: usize = 32;
 /// A hypothesis confirms a better one when it scores at least this share of it.
 const HIT_SHARE: f64 = 0.7;
 
-/// Runs the loop. The result is sorted by falling score.
+/// Runs the loop. The result is sorted by falling score. `go_on` is told how many samples were drawn, and whether
+/// the loop goes on is for it to say.
 pub fn ransac<P: Problem>(
     problem: &P,
     options: &RansacOptions,
-    mut progress: impl FnMut(usize),
+    mut go_on: impl FnMut(usize) -> bool,
 ) -> (Vec<Ranked<P::Pose>>, usize) {
     let mut kept: Vec<Ranked<P::Pose>> = Vec::new();
     let mut samples = 0;
@@ -84,8 +85,8 @@ pub fn ransac<P: Problem>(
         for (score, pose) in found.into_iter().flatten() {
             insert(problem, &mut kept, options.keep, pose, score);
         }
-        progress(samples);
-        if samples >= options.fewest_samples && kept.first().is_some_and(|k| k.hits >= options.enough_hits) {
+        let is_sure = kept.first().is_some_and(|k| k.hits >= options.enough_hits);
+        if !go_on(samples) || samples >= options.fewest_samples && is_sure {
             break;
         }
     }
@@ -164,7 +165,7 @@ mod tests {
 
     #[test]
     fn ranks_distinct_poses() {
-        let (found, samples) = ransac(&Guess, &OPTIONS, |_| ());
+        let (found, samples) = ransac(&Guess, &OPTIONS, |_| true);
         assert!(samples >= 20_000 && found[0].pose == 500);
         assert!(found.windows(2).all(|w| w[0].score >= w[1].score));
         assert!(found.iter().skip(1).all(|k| (k.pose - 500).abs() >= 5));
@@ -196,14 +197,14 @@ mod tests {
     #[test]
     fn scores_that_are_given_up_early_change_nothing() {
         let told = |found: Vec<Ranked<i64>>| found.iter().map(|k| (k.pose, k.score, k.hits)).collect::<Vec<_>>();
-        assert_eq!(told(ransac(&Guess, &OPTIONS, |_| ()).0), told(ransac(&Patient, &OPTIONS, |_| ()).0));
+        assert_eq!(told(ransac(&Guess, &OPTIONS, |_| true).0), told(ransac(&Patient, &OPTIONS, |_| true).0));
     }
 
     #[test]
     fn gives_the_same_for_any_number_of_threads() {
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| ransac(&Guess, &OPTIONS, |_| ()).0.iter().map(|k| k.pose).collect::<Vec<_>>())
+            pool.install(|| ransac(&Guess, &OPTIONS, |_| true).0.iter().map(|k| k.pose).collect::<Vec<_>>())
         };
         assert_eq!(run(1), run(3));
     }

@@ -86,7 +86,7 @@ impl Assessment {
             alternative_m: f64::INFINITY,
             names_scale: false,
         };
-        let Some(best) = alignment.best else { return nothing };
+        let Some(best) = alignment.best_candidate else { return nothing };
         let places: Vec<Vector3<f64>> = points.iter().map(|x| best.apply(x) - alignment.center).collect();
         let axes = Axes::new(alignment);
         let all = |weights: &dyn Fn(usize) -> f64| rms_of(&axes.motion(weights), &places, axes.radius);
@@ -223,7 +223,7 @@ mod tests {
     use super::*;
     use crate::solvers::scene::Chance;
     use crate::synthetic::sfm_from_city;
-    use crate::verdict::{Certainty, Freedom, ModelErrors, SearchSummary, Support};
+    use crate::verdict::{Certainty, Freedom, FreedomKind, FreedomUnit, ModelErrors, SearchSummary, Support};
 
     const RADIUS: f64 = 20.0;
 
@@ -243,7 +243,8 @@ mod tests {
             name: String::new(),
             direction: Vector3::zeros(),
             sigma: sigmas[k],
-            unit: "m",
+            kind: FreedomKind::Shift,
+            unit: FreedomUnit::Metre,
             determined: k < determined,
             given: false,
         };
@@ -256,7 +257,7 @@ mod tests {
         let alignment = Alignment {
             verdict: Verdict::Aligned,
             reason: String::new(),
-            best: Some(off * truth),
+            best_candidate: Some(off * truth),
             alternatives: Vec::new(),
             certainty: Certainty::default(),
             origin: Vector3::zeros(),

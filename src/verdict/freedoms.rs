@@ -7,7 +7,7 @@
 //!              start, so that it is finite
 //! Source       mathematics of the normalised Jacobian: Gelfand et al. (3DIM 2003) for the slippable motions of a surface
 
-use super::{Freedom, words};
+use super::{Freedom, FreedomKind, FreedomUnit, words};
 use crate::geometry::Vector3;
 use crate::limits::VerdictLimits;
 use crate::robust::{Chart, Matrix7, Motion, Vector7};
@@ -76,39 +76,66 @@ impl Hold {
     /// The freedoms that are not given, the loosest first.
     pub fn directions(&self) -> Vec<HeldDirection> {
         let spectrum = self.chart.spectrum(&self.information);
+        let all = self.with_prior(&self.information);
+        let without: Vec<Posterior> = self.without.iter().map(|information| self.with_prior(information)).collect();
         let direction = |d: &crate::robust::Direction| {
-            let along = |m: &Matrix7| d.unit.dot(&(m * d.unit)).max(0.0);
-            let of_data = along(&self.information);
-            let is_confirmed = || {
-                let least = (self.confirmed_times * self.accuracy_m).powi(-2);
-                self.without.iter().all(|m| along(m) >= least)
+            let of_data = along(&self.information, &d.unit);
+            let most_m = self.confirmed_times * self.accuracy_m;
+            let is_confirmed = |information: &Matrix7, posterior: &Posterior| {
+                along(information, &d.unit) * most_m * most_m >= 1.0 && posterior.sigma_along(&d.unit) <= most_m
             };
+            let mut left_out = self.without.iter().zip(&without);
             HeldDirection {
                 unit: d.unit,
-                sigma_m: (of_data + along(&self.prior)).sqrt().recip(),
-                determined: of_data * self.accuracy_m * self.accuracy_m >= 1.0 && is_confirmed(),
+                sigma_m: all.sigma_along(&d.unit),
+                determined: of_data * self.accuracy_m * self.accuracy_m >= 1.0
+                    && left_out.all(|(information, posterior)| is_confirmed(information, posterior)),
             }
         };
         spectrum.directions().iter().map(direction).collect()
     }
 
+    /// What is known with such information of the data and what is known beforehand.
+    fn with_prior(&self, information: &Matrix7) -> Posterior {
+        let information = information + self.prior;
+        let covariance = match self.chart.motion {
+            Motion::Similarity => information.try_inverse(),
+            Motion::Rigid => {
+                let of_pose = information.fixed_view::<6, 6>(0, 0).into_owned().try_inverse();
+                of_pose.map(|inverse| inverse.fixed_resize(0.0))
+            }
+        };
+        Posterior { information, covariance }
+    }
+
     /// Covariance over (rotation vector about the centre, rad; translation of the centre, m; log scale).
     /// A scale that is given has none.
     pub fn covariance(&self) -> [[f64; 7]; 7] {
-        let information = self.information + self.prior;
-        let covariance = match self.chart.motion {
-            Motion::Similarity => information.try_inverse().unwrap_or_else(Matrix7::zeros),
-            Motion::Rigid => {
-                let of_pose = information.fixed_view::<6, 6>(0, 0).into_owned().try_inverse();
-                of_pose.map_or_else(Matrix7::zeros, |inverse| inverse.fixed_resize(0.0))
-            }
-        };
+        let covariance = self.with_prior(&self.information).covariance.unwrap_or_else(Matrix7::zeros);
         let r = self.chart.radius;
         let unit = Vector7::from_column_slice(&[1.0 / r, 1.0 / r, 1.0 / r, 1.0, 1.0, 1.0, 1.0 / r]);
         std::array::from_fn(|i| {
             std::array::from_fn(|j| unit[i] * (covariance[(i, j)] + covariance[(j, i)]) / 2.0 * unit[j])
         })
     }
+}
+
+/// Information and its inverse, in the chart's unknowns, 1 / m^2 and m^2; a scale that is given has no variance.
+struct Posterior {
+    information: Matrix7,
+    covariance: Option<Matrix7>,
+}
+
+impl Posterior {
+    /// One sigma along a direction, whatever the others are, metres. Where the information is singular, with the others held.
+    fn sigma_along(&self, unit: &Vector7) -> f64 {
+        let held = along(&self.information, unit).sqrt().recip();
+        self.covariance.as_ref().map_or(held, |covariance| along(covariance, unit).sqrt().max(held))
+    }
+}
+
+fn along(matrix: &Matrix7, unit: &Vector7) -> f64 {
+    unit.dot(&(matrix * unit)).max(0.0)
 }
 
 /// The freedoms in words, the loosest first; a given scale that is held stands at the end.
@@ -118,25 +145,35 @@ pub fn freedoms(hold: &Hold, limits: &VerdictLimits) -> Vec<Freedom> {
         let part = |first: usize| Vector3::new(d.unit[first], d.unit[first + 1], d.unit[first + 2]);
         let (turn, shift, scale) = (part(0), part(3), d.unit[6]);
         let largest = turn.norm().max(shift.norm()).max(scale.abs());
-        let (name, direction, sigma, unit) = if scale.abs() == largest {
-            ("scale".to_owned(), Vector3::zeros(), d.sigma_m / r, "1")
+        let determined = d.determined;
+        if scale.abs() == largest {
+            Freedom { determined, ..scale_freedom(d.sigma_m / r) }
         } else if shift.norm() == largest {
-            (words::shift(&shift), upward(&shift), d.sigma_m, "m")
+            let (kind, unit) = (FreedomKind::Shift, FreedomUnit::Metre);
+            let (name, direction) = (words::shift(&shift), upward(&shift));
+            Freedom { kind, name, direction, sigma: d.sigma_m, unit, determined, given: false }
         } else {
-            (words::turn(&turn), upward(&turn), (d.sigma_m / r).to_degrees(), "deg")
-        };
-        Freedom { name, direction, sigma, unit, determined: d.determined, given: false }
+            let (kind, unit) = (FreedomKind::Turn, FreedomUnit::Degree);
+            let (name, direction) = (words::turn(&turn), upward(&turn));
+            Freedom { kind, name, direction, sigma: (d.sigma_m / r).to_degrees(), unit, determined, given: false }
+        }
     };
     let held = hold.given_scale.filter(|_| hold.chart.motion == Motion::Rigid);
-    let given = held.map(|scale| Freedom {
+    let given =
+        held.map(|scale| Freedom { determined: !scale.is_contradicted(r, limits), given: true, ..scale_freedom(0.0) });
+    hold.directions().into_iter().map(in_words).chain(given).collect()
+}
+
+fn scale_freedom(log_sigma: f64) -> Freedom {
+    Freedom {
+        kind: FreedomKind::Scale,
         name: "scale".to_owned(),
         direction: Vector3::zeros(),
-        sigma: 0.0,
-        unit: "1",
-        determined: !scale.is_contradicted(r, limits),
-        given: true,
-    });
-    hold.directions().into_iter().map(in_words).chain(given).collect()
+        sigma: log_sigma,
+        unit: FreedomUnit::LogScale,
+        determined: false,
+        given: false,
+    }
 }
 
 /// The unit vector along `v` that points up, or east where level.

@@ -226,10 +226,7 @@ fn undetermined_reason(hold: &Hold, limits: &VerdictLimits) -> Option<String> {
     let open: Vec<String> = freedoms(hold, limits)
         .into_iter()
         .filter(|f| !f.determined && !f.given)
-        .map(|f| {
-            let (sigma, unit) = if f.unit == "1" { (percent(f.sigma), "%") } else { (f.sigma, f.unit) };
-            format!("{} (sigma {sigma:.2} {unit}; {})", f.name, words::remedy(&f.name))
-        })
+        .map(|f| format!("{} (sigma {}; {})", f.name, words::sigma(&f), words::remedy(&f)))
         .collect();
     (!open.is_empty()).then(|| format!("the data do not fix the pose {}", open.join(", nor ")))
 }
@@ -242,10 +239,8 @@ fn aligned_reason(
     limits: &VerdictLimits,
 ) -> String {
     let loosest = freedoms(hold, limits).into_iter().find(|f| !f.given);
-    let loosest = loosest.map_or(String::new(), |f| {
-        let (sigma, unit) = if f.unit == "1" { (percent(f.sigma), "%") } else { (f.sigma, f.unit) };
-        format!("; the loosest freedom, {}, is held to {sigma:.2} {unit}", f.name)
-    });
+    let loosest = loosest
+        .map_or(String::new(), |f| format!("; the loosest freedom, {}, is held to {}", f.name, words::sigma(&f)));
     let second = others.iter().max_by(|a, b| a.bits.total_cmp(&b.bits));
     let runner_up = second.map_or("no other pose explains anything".to_owned(), |r| {
         let twin = r.beyond_start && best.bits - r.bits < limits.margin_bits();
@@ -350,6 +345,34 @@ mod tests {
         let ruling = ruling(&[rival([0.0; 3], 30.0)], &hold);
         assert_eq!(ruling.verdict, Verdict::Undetermined);
         assert!(ruling.reason.contains("along up"), "{}", ruling.reason);
+    }
+
+    #[test]
+    fn a_freedom_that_turns_open_with_another_once_a_witness_is_left_out_is_undetermined() {
+        let mut hold = hold(None);
+        assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Aligned);
+        // Without one witness only the sum of two freedoms is held: either looks held where the other is not asked.
+        let held = hold.without[1][(3, 3)] * (1.0 - 1e-9);
+        hold.without[1][(3, 4)] = held;
+        hold.without[1][(4, 3)] = held;
+        assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Undetermined);
+    }
+
+    #[test]
+    fn the_sigma_of_a_freedom_is_that_of_the_covariance() {
+        // Two freedoms are open, and what is known beforehand ties them to each other.
+        let mut hold = hold(Some(5));
+        hold.information[(3, 3)] = 0.0;
+        hold.prior[(3, 5)] = 0.009;
+        hold.prior[(5, 3)] = 0.009;
+        let covariance = hold.covariance();
+        for freedom in freedoms(&hold, &Limits::default().verdict).iter().filter(|f| f.name.starts_with("along")) {
+            let variance: f64 = (0..3)
+                .flat_map(|i| (0..3).map(move |j| (i, j)))
+                .map(|(i, j)| freedom.direction[i] * covariance[3 + i][3 + j] * freedom.direction[j])
+                .sum();
+            assert!((freedom.sigma / variance.sqrt() - 1.0).abs() < 1e-9, "{freedom:?}");
+        }
     }
 
     #[test]

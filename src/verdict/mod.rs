@@ -41,9 +41,8 @@ pub struct Alignment {
     pub verdict: Verdict,
     /// One sentence with figures.
     pub reason: String,
-    /// What fits best; `None` only with [`Verdict::Failed`]. The report calls it `transform` where the verdict is
-    /// aligned and `best_candidate` otherwise.
-    pub best: Option<Similarity>,
+    /// The pose that fits best, whatever the verdict; `None` only with [`Verdict::Failed`]. What may be relied on is [`Alignment::transform`].
+    pub best_candidate: Option<Similarity>,
     /// Other distinct poses, heaviest first.
     pub alternatives: Vec<Alternative>,
     /// What speaks for the best pose.
@@ -65,6 +64,13 @@ pub struct Alignment {
     pub evidence: Vec<PlaneEvidence>,
     pub search: SearchSummary,
     pub warnings: Vec<String>,
+}
+
+impl Alignment {
+    /// The similarity that sets the reconstruction into the city: `None` unless the verdict is [`Verdict::Aligned`].
+    pub fn transform(&self) -> Option<&Similarity> {
+        self.best_candidate.as_ref().filter(|_| self.verdict == Verdict::Aligned)
+    }
 }
 
 /// How sure the best pose is that of the data, and not one that chance fits as well.
@@ -113,17 +119,48 @@ pub struct Alternative {
     pub differs: String,
 }
 
+/// What a freedom moves most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FreedomKind {
+    Shift,
+    Turn,
+    Scale,
+}
+
+/// Unit of a freedom's sigma.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FreedomUnit {
+    Metre,
+    /// Length in the frame of a part, which is not metric.
+    FrameUnit,
+    Degree,
+    /// Natural logarithm of the scale.
+    LogScale,
+}
+
+impl FreedomUnit {
+    /// As the reports write it.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            FreedomUnit::Metre => "m",
+            FreedomUnit::FrameUnit => "frame unit",
+            FreedomUnit::Degree => "deg",
+            FreedomUnit::LogScale => "1",
+        }
+    }
+}
+
 /// One of the seven freedoms in the basis that the data suggest.
 #[derive(Clone, Debug)]
 pub struct Freedom {
-    /// In words: "along up", "along the street (azimuth 31 deg)", "heading", "scale".
+    pub kind: FreedomKind,
+    /// In words: "along up", "along the azimuth 31 deg", "heading", "scale".
     pub name: String,
     /// City frame; zero for the scale.
     pub direction: Vector3<f64>,
     /// One standard deviation, in `unit`.
     pub sigma: f64,
-    /// "m", "deg" or "1" (log scale).
-    pub unit: &'static str,
+    pub unit: FreedomUnit,
     pub determined: bool,
     /// Told by the user, not by the data; then it is determined as long as the data do not contradict it.
     pub given: bool,

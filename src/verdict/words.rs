@@ -1,5 +1,6 @@
 //! Directions and differences as a person says them.
 
+use super::{Freedom, FreedomKind, FreedomUnit};
 use crate::geometry::{Point3, Similarity, Vector3};
 
 /// A direction nearer to up than this is called up, nearer to level than its complement is called level (cosines).
@@ -54,13 +55,24 @@ pub fn difference(a: &Similarity, b: &Similarity, center: &Point3<f64>) -> Strin
     if parts.is_empty() { "by less than 0.05 m and 0.5 deg".to_owned() } else { parts.join(", ") }
 }
 
-/// What would fix a freedom of this name.
-pub fn remedy(name: &str) -> &'static str {
-    match name {
-        "along up" => "ground, a floor or a roof that the cameras saw and the city model has (--terrain) would fix it",
-        "scale" => "a known scale (--scale) or planes that do not meet in one point would fix it",
-        "heading" => "a second wall across the first would fix it",
-        tilt if tilt.starts_with("tilt") => "ground or a wall in another direction would fix it",
-        _ => "a crossing street or a wall that faces this way would fix it",
+/// What would fix a freedom.
+pub fn remedy(freedom: &Freedom) -> &'static str {
+    let is_up = freedom.direction.z.abs() > UP_COS;
+    match freedom.kind {
+        FreedomKind::Shift if is_up => {
+            "ground, a floor or a roof that the cameras saw and the city model has (--terrain) would fix it"
+        }
+        FreedomKind::Shift => "a crossing street or a wall that faces this way would fix it",
+        FreedomKind::Turn if is_up => "a second wall across the first would fix it",
+        FreedomKind::Turn => "ground or a wall in another direction would fix it",
+        FreedomKind::Scale => "a known scale (--scale) or planes that do not meet in one point would fix it",
+    }
+}
+
+/// The sigma of a freedom as a person reads it: scales in percent.
+pub fn sigma(freedom: &Freedom) -> String {
+    match freedom.unit {
+        FreedomUnit::LogScale => format!("{:.2} %", 100.0 * freedom.sigma),
+        unit => format!("{:.2} {}", freedom.sigma, unit.symbol()),
     }
 }

@@ -1,0 +1,38 @@
+//! All errors of the library as one.
+
+use crate::city::CityError;
+use crate::export::{ExportError, OutputError, ReportError};
+use crate::format::PlacementError;
+use crate::geometry::StartError;
+use crate::imagery::ImageryError;
+use crate::merging::Unbalanced;
+use crate::observer::Cancelled;
+use crate::reconstruction::ReconstructionError;
+
+/// Whatever a function of this library may end with; each function names the one that is its own. Messages say what is wrong, where,
+/// and what to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    #[error(transparent)]
+    City(#[from] CityError),
+    #[error(transparent)]
+    Reconstruction(#[from] ReconstructionError),
+    #[error(transparent)]
+    Imagery(#[from] ImageryError),
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// A start or an earlier alignment that cannot be read.
+    #[error(transparent)]
+    Placement(#[from] PlacementError),
+    #[error(transparent)]
+    Merge(#[from] Unbalanced),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}

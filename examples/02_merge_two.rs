@@ -10,7 +10,7 @@ use std::path::Path;
 use cityweld::export::write_merge;
 use cityweld::geometry::{Rotation3, Similarity, Vector3};
 use cityweld::imagery::{SuperpixelOptions, SuperpixelSource, lift_superpixels_of};
-use cityweld::merging::{MergeOptions, Part, merge};
+use cityweld::merging::{JoinOptions, Part, join};
 use cityweld::reconstruction::{ImageIndex, PointIndex, Reconstruction, read_reconstruction};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         parts.push(Part { name: name.into(), sfm, superpixels: Some(superpixels), anchor: None });
     }
 
-    let merged = merge(&parts, &MergeOptions::default(), &|_| ())?;
+    let merged = join(&parts, &JoinOptions::default(), &|_| ())?;
     println!("{}: {}", merged.verdict.word(), merged.reason);
     if let Some(west_from_east) = &merged.parts[1].merged_from_part {
         println!("scale {:.6} (1 / 0.4 is right)", west_from_east.scale);

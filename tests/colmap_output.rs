@@ -8,7 +8,7 @@ use std::path::Path;
 use cityweld::export::colmap::write_colmap;
 use cityweld::format::read_start;
 use cityweld::geometry::{Rotation3, Similarity, Vector3};
-use cityweld::merging::{MergeOptions, MergeVerdict, Part, merge};
+use cityweld::merging::{JoinOptions, MergeVerdict, Part, join};
 use cityweld::reconstruction::read_reconstruction;
 use needs::pycolmap;
 use pieces::piece;
@@ -79,7 +79,7 @@ fn pycolmap_opens_a_merged_model_and_its_statistics_agree() {
     };
     let part = |name: &str, sfm| Part { name: name.into(), sfm, superpixels: None, anchor: None };
     let parts = [part("a", piece(&whole, 0..14, &Similarity::identity())), part("b", piece(&whole, 11..24, &turned))];
-    let merged = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+    let merged = join(&parts, &JoinOptions::default(), &|_| ()).unwrap();
     assert_eq!(merged.verdict, MergeVerdict::Merged, "{}", merged.reason);
     let sfm = merged.model.unwrap().sfm;
     let room = tempfile::tempdir().unwrap();

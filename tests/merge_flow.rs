@@ -10,7 +10,7 @@ use std::process::Command;
 use cityweld::export::colmap::write_colmap;
 use cityweld::export::merge_report;
 use cityweld::geometry::{Camera, CameraModel, Point3, Rotation3, Similarity, Vector3};
-use cityweld::merging::{Anchor, MergeOptions, MergeVerdict, Part, merge};
+use cityweld::merging::{Anchor, JoinOptions, MergeVerdict, Part, join};
 use cityweld::reconstruction::{
     CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, read_reconstruction,
 };
@@ -119,7 +119,7 @@ fn joins_two_parts_over_one_photograph_in_both_orders() {
     for (parts, frame_from_world) in
         [([first.clone(), second.clone()], Similarity::identity()), ([second, first], second_from_world())]
     {
-        let found = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+        let found = join(&parts, &JoinOptions::default(), &|_| ()).unwrap();
         assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
         for (part, place) in parts.iter().zip(&found.parts) {
             let part_from_world = if part.name == "first" { Similarity::identity() } else { second_from_world() };
@@ -140,7 +140,7 @@ fn joins_two_parts_over_one_photograph_in_both_orders() {
 fn leaves_a_part_out_that_shares_nothing() {
     let [first, second] = two_parts();
     let stranger = part(0..3, &second_from_world(), |view| format!("elsewhere/{view}.jpg"));
-    let found = merge(&[first, second, given("stranger", stranger)], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[first, second, given("stranger", stranger)], &JoinOptions::default(), &|_| ()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Partial);
     assert!(found.parts[2].merged_from_part.is_none() && found.parts[2].reason.is_some());
     assert_eq!(found.ledger.images.dropped.values().sum::<usize>(), 3);
@@ -153,7 +153,7 @@ fn does_not_join_photographs_that_only_share_their_name() {
     let mut other = second;
     other.sfm.images[0].name = "none.jpg".into();
     other.sfm.images[2].name = photo(2);
-    let found = merge(&[first, other], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[first, other], &JoinOptions::default(), &|_| ()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Failed, "{}", found.reason);
     assert!(found.model.is_none());
 }
@@ -168,7 +168,7 @@ fn does_not_join_a_part_that_is_stretched_along_one_axis() {
     for image in &mut second.sfm.images {
         image.cam_from_sfm_translation = -(image.cam_from_sfm_rotation * stretch(&image.center()).coords);
     }
-    let found = merge(&[first, second], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[first, second], &JoinOptions::default(), &|_| ()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Failed, "{}", found.reason);
 }
 
@@ -176,7 +176,7 @@ fn does_not_join_a_part_that_is_stretched_along_one_axis() {
 fn gives_the_same_for_any_number_of_threads() {
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| merge(&two_parts(), &MergeOptions::default(), &|_| ()).unwrap().model.unwrap().sfm.points)
+        pool.install(|| join(&two_parts(), &JoinOptions::default(), &|_| ()).unwrap().model.unwrap().sfm.points)
     };
     assert_eq!(run(1), run(3));
 }
@@ -219,7 +219,7 @@ fn writes_a_model_that_can_be_read_again_and_says_how_it_ended() {
 fn one_part_given_twice_is_the_identity() {
     let [first, _] = two_parts();
     let found =
-        merge(&[given("a", first.sfm.clone()), given("b", first.sfm)], &MergeOptions::default(), &|_| ()).unwrap();
+        join(&[given("a", first.sfm.clone()), given("b", first.sfm)], &JoinOptions::default(), &|_| ()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
     let pose = found.parts[1].merged_from_part.unwrap();
     assert!((pose.scale - 1.0).abs() < 1e-9 && pose.translation.norm() < 1e-9);
@@ -268,7 +268,7 @@ fn every_kind_of_report_keeps_to_the_published_schema() {
         (vec![anchored(&first, Aligned), anchored(&stranger, Ambiguous)], "ambiguous"),
         (vec![anchored(&first, Failed), anchored(&stranger, Failed)], "failed"),
     ] {
-        let found = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+        let found = join(&parts, &JoinOptions::default(), &|_| ()).unwrap();
         let report: Value = serde_json::from_str(&merge_report(&found).unwrap()).unwrap();
         assert_eq!(report["verdict"], verdict, "{report:#}");
         assert!(keeps(&report, &schema, &schema), "{report:#}");
@@ -295,7 +295,7 @@ fn a_part_of_mirrored_photographs_stays_apart() {
     inside_out.sfm.points.iter_mut().for_each(|p| *p = Point3::from(-p.coords));
     inside_out.sfm.images.iter_mut().for_each(|i| i.cam_from_sfm_translation *= -1.0);
     for (other, why) in [(mirrored, "different keypoints"), (inside_out, "contradicts itself")] {
-        let found = merge(&[first.clone(), other], &MergeOptions::default(), &|_| ()).unwrap();
+        let found = join(&[first.clone(), other], &JoinOptions::default(), &|_| ()).unwrap();
         assert_eq!(found.verdict, MergeVerdict::Failed);
         assert!(found.reason.contains(why), "{}", found.reason);
     }
@@ -306,7 +306,7 @@ fn keeps_the_rigs_and_frames_of_both_parts() {
     let rig =
         read_reconstruction(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reconstruction/rig_bin")).unwrap();
     let again = rig.transformed(&second_from_world());
-    let found = merge(&[given("a", rig.clone()), given("b", again)], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[given("a", rig.clone()), given("b", again)], &JoinOptions::default(), &|_| ()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
     let model = found.model.unwrap().sfm;
     let room = tempfile::tempdir().unwrap();

@@ -12,7 +12,7 @@ use cityweld::imagery::{
     ImageryError, ImageryWarning, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels,
     lift_superpixels_of,
 };
-use cityweld::merging::{Anchor, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
+use cityweld::merging::{Anchor, EvidenceChoice, JoinOptions, Merge, MergeVerdict, Part, join};
 use cityweld::planes::PreparedCity;
 use cityweld::reconstruction::{Image, read_reconstruction};
 
@@ -30,9 +30,9 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
         EvidenceArg::All => EvidenceChoice::All,
         EvidenceArg::Planes => EvidenceChoice::Planes,
     };
-    let options = MergeOptions { seed: session.common.seed, evidence };
+    let options = JoinOptions { seed: session.common.seed, evidence, ..JoinOptions::default() };
     // The parts go before the files are written: a model is as large as they are.
-    let merged = merge(&read_parts(args, city.as_ref(), session)?, &options, &|stage| voice.detail(stage))?;
+    let merged = join(&read_parts(args, city.as_ref(), session)?, &options, &|stage| voice.detail(stage))?;
     voice.detail(&format!("{}: {}", merged.verdict.word(), merged.reason));
 
     voice.bar.show("writing", 0, 0);

@@ -2,21 +2,46 @@
 
 use std::collections::BTreeMap;
 
-use super::{Fused, Part};
+use super::outcome::Fused;
+use super::part::Part;
+use crate::reconstruction::Reconstruction;
 
-/// `in = kept + fused + sum(dropped)`.
+/// Why something of a part is not in the result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DropReason {
+    BehindCamera,
+    FarFromKeypoint,
+    NoObservationLeft,
+    PartNotPlaced,
+    SecondKeypoint,
+}
+
+impl DropReason {
+    /// The words that the report uses.
+    pub fn words(self) -> &'static str {
+        match self {
+            DropReason::BehindCamera => "behind camera",
+            DropReason::FarFromKeypoint => "far from its keypoint in the fused photograph",
+            DropReason::NoObservationLeft => "no observation left",
+            DropReason::PartNotPlaced => "part not placed",
+            DropReason::SecondKeypoint => "second keypoint of one point in a photograph",
+        }
+    }
+}
+
+/// What became of one kind of thing: `given = kept + fused + sum(dropped)`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Account {
     pub given: usize,
-    /// Stand in the result on their own.
+    /// What stands in the result on its own.
     pub kept: usize,
-    /// Became part of one that is kept.
+    /// What became part of one that is kept.
     pub fused: usize,
-    /// By reason.
-    pub dropped: BTreeMap<&'static str, usize>,
+    /// What is not in the result, by reason.
+    pub dropped: BTreeMap<DropReason, usize>,
 }
 
-/// Of all parts, the ones left out too.
+/// The accounts of all parts, the ones left out too.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ledger {
     pub images: Account,
@@ -40,10 +65,8 @@ pub struct Unbalanced {
     pub counted: usize,
 }
 
-pub(super) const NOT_PLACED: &str = "part not placed";
-
 impl Account {
-    pub(super) fn drop(&mut self, reason: &'static str, count: usize) {
+    pub(super) fn drop(&mut self, reason: DropReason, count: usize) {
         if count > 0 {
             *self.dropped.entry(reason).or_default() += count;
         }
@@ -51,7 +74,7 @@ impl Account {
 }
 
 impl Ledger {
-    /// What goes in; `left_out` parts are dropped at once.
+    /// What goes in; parts without a place are dropped at once.
     pub(super) fn open(parts: &[Part], is_placed: impl Fn(usize) -> bool) -> Ledger {
         let mut ledger = Ledger::default();
         for (index, part) in parts.iter().enumerate() {
@@ -60,7 +83,7 @@ impl Ledger {
             for (account, count) in accounts.into_iter().zip([images, points, observations]) {
                 account.given += count;
                 if !is_placed(index) {
-                    account.drop(NOT_PLACED, count);
+                    account.drop(DropReason::PartNotPlaced, count);
                 }
             }
         }
@@ -89,7 +112,7 @@ impl Ledger {
 }
 
 /// Images, points, keypoints that see a point.
-pub(super) fn counts(sfm: &crate::reconstruction::Reconstruction) -> [usize; 3] {
+fn counts(sfm: &Reconstruction) -> [usize; 3] {
     let linked = sfm.images.iter().map(|i| i.observations.iter().filter(|o| o.point.is_some()).count()).sum();
     [sfm.images.len(), sfm.points.len(), linked]
 }

@@ -22,5 +22,7 @@ pub mod export;
 pub mod synthetic;
 
 mod align;
+mod merge;
 
 pub use align::{AlignOptions, Progress, Up, align};
+pub use merge::{MergeError, MergeOptions, MergePart, MergeProgress, MergeWatch, merge};

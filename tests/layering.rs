@@ -40,7 +40,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "verdict",
         ],
     ),
-    ("lib", &["align"]),
+    ("merge", &["limits", "geometry", "imagery", "reconstruction", "planes", "merging", "align"]),
+    ("lib", &["align", "merge"]),
     // For tests, examples and benchmarks: no room may import it.
     ("synthetic", &["geometry", "city", "reconstruction", "imagery", "solvers", "verdict"]),
 ];

@@ -40,7 +40,7 @@ pub fn join(parts: &[Part], options: &JoinOptions, progress: &dyn Fn(&str)) -> R
     } else {
         (None, Ledger::nothing_placed(parts))
     };
-    ledger.check(parts, model.as_ref())?;
+    ledger.check(parts, model.as_ref().map(|fused| &fused.sfm))?;
     Ok(Merge {
         verdict: solved.verdict,
         reason: solved.reason,

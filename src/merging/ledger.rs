@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::outcome::Fused;
 use super::part::Part;
 use crate::reconstruction::Reconstruction;
 
@@ -95,8 +94,8 @@ impl Ledger {
     }
 
     /// The accounts balance, with each other, with the parts and with the model itself.
-    pub(super) fn check(&self, parts: &[Part], model: Option<&Fused>) -> Result<(), Unbalanced> {
-        let in_model = model.map_or([0; 3], |m| counts(&m.sfm));
+    pub(super) fn check(&self, parts: &[Part], model: Option<&Reconstruction>) -> Result<(), Unbalanced> {
+        let in_model = model.map_or([0; 3], counts);
         let given = parts.iter().map(|p| counts(&p.sfm)).fold([0; 3], |s, c| [s[0] + c[0], s[1] + c[1], s[2] + c[2]]);
         let accounts = [("images", &self.images), ("points", &self.points), ("observations", &self.observations)];
         for ((what, account), (counted, given)) in accounts.into_iter().zip(in_model.into_iter().zip(given)) {

@@ -8,8 +8,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use cityweld::{
-    ImageIndex, MergeOptions, Part, PointIndex, Reconstruction, Rotation3, Similarity, SuperpixelOptions,
-    SuperpixelSource, Vector3, lift_superpixels_of, merge, read_reconstruction, write_merge,
+    ImageIndex, JoinOptions, Part, PointIndex, Reconstruction, Rotation3, Similarity, SuperpixelOptions,
+    SuperpixelSource, Vector3, join, lift_superpixels_of, read_reconstruction, write_merge,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         parts.push(Part { name: name.into(), sfm, superpixels: Some(superpixels), anchor: None });
     }
 
-    let merged = merge(&parts, &MergeOptions::default(), &|_| ())?;
+    let merged = join(&parts, &JoinOptions::default(), &())?;
     println!("{}: {}", merged.verdict.word(), merged.reason);
     if let Some(west_from_east) = &merged.parts[1].merged_from_part {
         println!("scale {:.6} (1 / 0.4 is right)", west_from_east.scale);

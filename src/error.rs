@@ -5,7 +5,7 @@ use crate::export::{ExportError, OutputError, ReportError};
 use crate::format::PlacementError;
 use crate::geometry::StartError;
 use crate::imagery::ImageryError;
-use crate::merging::Unbalanced;
+use crate::merge::MergeError;
 use crate::observer::Cancelled;
 use crate::reconstruction::ReconstructionError;
 
@@ -26,7 +26,7 @@ pub enum Error {
     #[error(transparent)]
     Placement(#[from] PlacementError),
     #[error(transparent)]
-    Merge(#[from] Unbalanced),
+    Merge(#[from] MergeError),
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error(transparent)]

@@ -6,7 +6,7 @@
 //! labels, photographs ─► lift_superpixels ──────────────────┼─► align ──► Alignment ──► write_alignment
 //! a coarse pose ─► read_start ──► Start ──► AlignOptions ───┘
 //!
-//! reconstructions ──► Part ──► merge ──► Merge ──► write_merge
+//! reconstructions (and starts in a city) ──► MergePart ──► merge ──► Merge ──► write_merge
 //! ```
 //!
 //! | To | use |
@@ -16,7 +16,7 @@
 //! | read a city model | [`read_city`], [`CityOptions`], [`CityModel`], [`PreparedCity`] |
 //! | read a reconstruction and a start | [`read_reconstruction`], [`Reconstruction`], [`read_start`], [`Start`] |
 //! | use label images or photographs | [`lift_superpixels`], [`SuperpixelSource`], [`SuperpixelOptions`] |
-//! | join reconstructions | [`merge`], [`Part`], [`MergeOptions`]; what comes back: [`Merge`] |
+//! | join reconstructions | [`merge()`], [`MergePart`], [`MergeOptions`]; with places known already [`join`]; what comes back: [`Merge`] |
 //! | write results | [`write_alignment`], [`write_merge`], [`write_colmap`], [`write_ply`], [`output`] |
 //! | solve point-to-plane problems of one's own | [`solvers`] |
 //! | make scenes with known truth | [`synthetic`] |
@@ -44,6 +44,7 @@ mod export;
 pub mod synthetic;
 
 mod align;
+mod merge;
 mod error;
 
 #[cfg(feature = "cli")]
@@ -77,7 +78,11 @@ pub use imagery::{
 };
 
 // Merging.
-pub use merging::{Account, Anchor, Edge, EdgeSource, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
+pub use merge::{MergeError, MergeOptions, MergePart, merge};
+pub use merging::{
+    Account, Anchor, DropReason, Edge, EdgeSource, EvidenceChoice, Fused, JoinOptions, Ledger, Merge, MergeVerdict,
+    MergedFrame, Part, PartPlace, PartSupport, join,
+};
 
 // Results as files.
 pub use export::colmap::write_colmap;
@@ -104,6 +109,7 @@ pub mod internals {
     pub use crate::export::gltf::{Placed, Scene as GltfScene, write_scene};
     pub use crate::format::colmap::{Encoding, RigRecord};
     pub use crate::limits::*;
+    pub use crate::merging::MergeLimits;
     pub use crate::planes::{CityPlanes, PlaneId, Upright, city_planes, patches};
     pub use crate::reconstruction::WarningKind;
     pub use crate::robust::{Chart, Matrix7, Motion, NormalEquations, Problem, Random, tukey_weight};

@@ -2,11 +2,16 @@
 
 use std::fmt;
 
-/// Watches long work from any thread. Both methods have a default: [`()`](unit) watches nothing.
+/// Watches long work from any thread. Every method has a default: [`()`](unit) watches nothing.
 pub trait Observer: Sync {
     /// So many steps of a stage are done, of how many; zero of zero where that is not known.
     fn progress(&self, stage: Stage, done: usize, all: usize) {
         let _ = (stage, done, all);
+    }
+
+    /// What was found on the way, one line.
+    fn detail(&self, text: &str) {
+        let _ = text;
     }
 
     /// Whether the work should end; it then ends soon, with [`Cancelled`].

@@ -6,7 +6,7 @@ mod pieces;
 use std::path::Path;
 
 use cityweld::{
-    MergeOptions, MergeVerdict, Part, Rotation3, Similarity, Vector3, merge, read_reconstruction, read_start,
+    JoinOptions, MergeVerdict, Part, Rotation3, Similarity, Vector3, join, read_reconstruction, read_start,
     write_colmap,
 };
 use needs::pycolmap;
@@ -78,7 +78,7 @@ fn pycolmap_opens_a_merged_model_and_its_statistics_agree() {
     };
     let part = |name: &str, sfm| Part { name: name.into(), sfm, superpixels: None, anchor: None };
     let parts = [part("a", piece(&whole, 0..14, &Similarity::identity())), part("b", piece(&whole, 11..24, &turned))];
-    let merged = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+    let merged = join(&parts, &JoinOptions::default(), &()).unwrap();
     assert_eq!(merged.verdict, MergeVerdict::Merged, "{}", merged.reason);
     let sfm = merged.model.unwrap().sfm;
     let room = tempfile::tempdir().unwrap();

@@ -22,7 +22,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("verdict", &["limits", "geometry", "robust"]),
     (
         "merging",
-        &["limits", "geometry", "format", "reconstruction", "imagery", "solvers", "robust", "planes", "verdict"],
+        &[
+            "limits",
+            "observer",
+            "geometry",
+            "format",
+            "reconstruction",
+            "imagery",
+            "solvers",
+            "robust",
+            "planes",
+            "verdict",
+        ],
     ),
     ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict", "merging"]),
     (
@@ -42,7 +53,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "verdict",
         ],
     ),
-    ("error", &["observer", "geometry", "format", "city", "reconstruction", "imagery", "merging", "export"]),
+    ("merge", &["limits", "observer", "geometry", "imagery", "reconstruction", "planes", "merging", "align"]),
+    ("error", &["observer", "geometry", "format", "city", "reconstruction", "imagery", "merge", "export"]),
     // Parses, reads, writes and prints: it neither searches nor estimates.
     (
         "cli",
@@ -60,6 +72,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "merging",
             "export",
             "align",
+            "merge",
         ],
     ),
     // For tests, examples and benchmarks: no room may import it.

@@ -9,8 +9,8 @@ use std::process::Command;
 
 use cityweld::internals::{Chart, Matrix7};
 use cityweld::{
-    Anchor, Camera, CameraIndex, CameraModel, Freedom, Image, ImageIndex, MergeOptions, MergeVerdict, Observation,
-    Part, Point3, PointIndex, Reconstruction, Rotation3, Similarity, Support, Vector3, Verdict, merge, merge_report,
+    Anchor, Camera, CameraIndex, CameraModel, Freedom, Image, ImageIndex, JoinOptions, MergeVerdict, Observation, Part,
+    Point3, PointIndex, Reconstruction, Rotation3, Similarity, Support, Vector3, Verdict, join, merge_report,
     read_reconstruction, write_colmap,
 };
 use json_schema::keeps;
@@ -116,7 +116,7 @@ fn joins_two_parts_over_one_photograph_in_both_orders() {
     for (parts, frame_from_world) in
         [([first.clone(), second.clone()], Similarity::identity()), ([second, first], second_from_world())]
     {
-        let found = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+        let found = join(&parts, &JoinOptions::default(), &()).unwrap();
         assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
         for (part, place) in parts.iter().zip(&found.parts) {
             let part_from_world = if part.name == "first" { Similarity::identity() } else { second_from_world() };
@@ -137,7 +137,7 @@ fn joins_two_parts_over_one_photograph_in_both_orders() {
 fn leaves_a_part_out_that_shares_nothing() {
     let [first, second] = two_parts();
     let stranger = part(0..3, &second_from_world(), |view| format!("elsewhere/{view}.jpg"));
-    let found = merge(&[first, second, given("stranger", stranger)], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[first, second, given("stranger", stranger)], &JoinOptions::default(), &()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Partial);
     assert!(found.parts[2].merged_from_part.is_none() && found.parts[2].reason.is_some());
     assert_eq!(found.ledger.images.dropped.values().sum::<usize>(), 3);
@@ -150,7 +150,7 @@ fn does_not_join_photographs_that_only_share_their_name() {
     let mut other = second;
     other.sfm.images[0].name = "none.jpg".into();
     other.sfm.images[2].name = photo(2);
-    let found = merge(&[first, other], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[first, other], &JoinOptions::default(), &()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Failed, "{}", found.reason);
     assert!(found.model.is_none());
 }
@@ -165,7 +165,7 @@ fn does_not_join_a_part_that_is_stretched_along_one_axis() {
     for image in &mut second.sfm.images {
         image.cam_from_sfm_translation = -(image.cam_from_sfm_rotation * stretch(&image.center()).coords);
     }
-    let found = merge(&[first, second], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[first, second], &JoinOptions::default(), &()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Failed, "{}", found.reason);
 }
 
@@ -173,7 +173,7 @@ fn does_not_join_a_part_that_is_stretched_along_one_axis() {
 fn gives_the_same_for_any_number_of_threads() {
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| merge(&two_parts(), &MergeOptions::default(), &|_| ()).unwrap().model.unwrap().sfm.points)
+        pool.install(|| join(&two_parts(), &JoinOptions::default(), &()).unwrap().model.unwrap().sfm.points)
     };
     assert_eq!(run(1), run(3));
 }
@@ -215,8 +215,7 @@ fn writes_a_model_that_can_be_read_again_and_says_how_it_ended() {
 #[test]
 fn one_part_given_twice_is_the_identity() {
     let [first, _] = two_parts();
-    let found =
-        merge(&[given("a", first.sfm.clone()), given("b", first.sfm)], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[given("a", first.sfm.clone()), given("b", first.sfm)], &JoinOptions::default(), &()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
     let pose = found.parts[1].merged_from_part.unwrap();
     assert!((pose.scale - 1.0).abs() < 1e-9 && pose.translation.norm() < 1e-9);
@@ -266,7 +265,7 @@ fn every_kind_of_report_keeps_to_the_published_schema() {
         (vec![anchored(&first, Aligned), anchored(&stranger, Ambiguous)], "ambiguous"),
         (vec![anchored(&first, Failed), anchored(&stranger, Failed)], "failed"),
     ] {
-        let found = merge(&parts, &MergeOptions::default(), &|_| ()).unwrap();
+        let found = join(&parts, &JoinOptions::default(), &()).unwrap();
         let report: Value = serde_json::from_str(&merge_report(&found).unwrap()).unwrap();
         assert_eq!(report["verdict"], verdict, "{report:#}");
         assert!(keeps(&report, &schema, &schema), "{report:#}");
@@ -293,7 +292,7 @@ fn a_part_of_mirrored_photographs_stays_apart() {
     inside_out.sfm.points.iter_mut().for_each(|p| *p = Point3::from(-p.coords));
     inside_out.sfm.images.iter_mut().for_each(|i| i.cam_from_sfm_translation *= -1.0);
     for (other, why) in [(mirrored, "different keypoints"), (inside_out, "contradicts itself")] {
-        let found = merge(&[first.clone(), other], &MergeOptions::default(), &|_| ()).unwrap();
+        let found = join(&[first.clone(), other], &JoinOptions::default(), &()).unwrap();
         assert_eq!(found.verdict, MergeVerdict::Failed);
         assert!(found.reason.contains(why), "{}", found.reason);
     }
@@ -304,7 +303,7 @@ fn keeps_the_rigs_and_frames_of_both_parts() {
     let rig =
         read_reconstruction(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reconstruction/rig_bin")).unwrap();
     let again = rig.transformed(&second_from_world());
-    let found = merge(&[given("a", rig.clone()), given("b", again)], &MergeOptions::default(), &|_| ()).unwrap();
+    let found = join(&[given("a", rig.clone()), given("b", again)], &JoinOptions::default(), &()).unwrap();
     assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
     let model = found.model.unwrap().sfm;
     let room = tempfile::tempdir().unwrap();

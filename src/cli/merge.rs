@@ -1,19 +1,15 @@
 //! `cityweld merge`
 
-use std::collections::{BTreeSet, HashMap};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::AlignOptions;
 use crate::city::read_city;
 use crate::export::{OutputKind, merge_report, write_merge};
 use crate::format::read_start;
-use crate::imagery::{
-    ImageryError, ImageryWarning, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels,
-    lift_superpixels_of,
-};
-use crate::merging::{Anchor, EvidenceChoice, Merge, MergeOptions, MergeVerdict, Part, merge};
+use crate::imagery::SuperpixelSource;
+use crate::merge::{MergeOptions, MergePart, merge};
+use crate::merging::{EvidenceChoice, JoinOptions, Merge, MergeVerdict};
 use crate::planes::PreparedCity;
-use crate::reconstruction::{Image, read_reconstruction};
+use crate::reconstruction::read_reconstruction;
 use anyhow::{Result, ensure};
 
 use super::args::{EvidenceArg, MergeArgs};
@@ -30,9 +26,10 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
         EvidenceArg::All => EvidenceChoice::All,
         EvidenceArg::Planes => EvidenceChoice::Planes,
     };
-    let options = MergeOptions { seed: session.common.seed, evidence };
+    let join = JoinOptions { seed: session.common.seed, evidence, ..JoinOptions::default() };
+    let options = MergeOptions { superpixels: superpixel_source(args), join };
     // The parts go before the files are written: a model is as large as they are.
-    let merged = merge(&read_parts(args, city.as_ref(), session)?, &options, &|stage| voice.detail(stage))?;
+    let merged = merge(read_parts(args, session)?, city.as_ref(), &options, voice)?;
     voice.detail(&format!("{}: {}", merged.verdict.word(), merged.reason));
 
     voice.bar.show("writing", 0, 0);
@@ -95,99 +92,21 @@ fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<PreparedC
     Ok(Some(PreparedCity::new(read_city(&files.city, &files.terrain, &files.options)?)))
 }
 
-fn read_parts(args: &MergeArgs, city: Option<&PreparedCity>, session: &Session) -> Result<Vec<Part>> {
+fn read_parts(args: &MergeArgs, session: &Session) -> Result<Vec<MergePart>> {
     let mut parts = Vec::new();
     for (index, (path, name)) in args.parts.iter().zip(unique_names(&args.parts)).enumerate() {
         session.voice.bar.show("reading the parts", index, args.parts.len());
         let sfm = read_reconstruction(path)?;
         session.voice.detail(&format!("{name}: {} points, {} images", sfm.points.len(), sfm.images.len()));
-        parts.push(Part { name, sfm, superpixels: None, anchor: None });
+        let start = args.start.get(index).map(|path| read_start(path)).transpose()?;
+        parts.push(MergePart { name, sfm, start });
     }
-    let Some(source) = superpixel_source(args) else {
-        anchor_all(&mut parts, None, args, city, session)?;
-        return Ok(parts);
-    };
-    lift_shared(&mut parts, &source, session)?;
-    anchor_all(&mut parts, Some(&source), args, city, session)?;
     Ok(parts)
 }
 
 fn superpixel_source(args: &MergeArgs) -> Option<SuperpixelSource> {
     let labels = args.labels.clone().map(SuperpixelSource::Labels);
     labels.or_else(|| args.photos.clone().map(SuperpixelSource::Photos))
-}
-
-/// Superpixels of a photograph where parts are joined: so small that most show one piece of surface, and still hold a handful
-/// of points.
-const JOINING_SUPERPIXELS: usize = 1100;
-
-/// Superpixels of the photographs that several parts have; the others join nothing.
-fn lift_shared(parts: &mut [Part], source: &SuperpixelSource, session: &Session) -> Result<()> {
-    let mut parts_with: HashMap<String, usize> = HashMap::new();
-    for part in parts.iter() {
-        let names: BTreeSet<&String> = part.sfm.images.iter().map(|image| &image.name).collect();
-        names.into_iter().for_each(|name| *parts_with.entry(name.clone()).or_default() += 1);
-    }
-    let is_shared = |image: &Image| parts_with.get(&image.name).is_some_and(|count| *count > 1);
-    for part in parts.iter_mut() {
-        session.voice.bar.show("superpixels", 0, 0);
-        // Both parts must see the same superpixels, whatever keypoints each of them has.
-        let options = SuperpixelOptions { count: JOINING_SUPERPIXELS, by_keypoints: false };
-        part.superpixels = given(lift_superpixels_of(&part.sfm, &is_shared, source, &options, &()))?;
-    }
-    // Where no photograph is shared, labels and photographs are for the city.
-    let any_is_shared = parts_with.values().any(|count| *count > 1);
-    if any_is_shared && parts.iter().all(|part| part.superpixels.is_none()) {
-        let folder = source.folder().display();
-        let text =
-            format!("no file there is that of a photograph that two parts share, so no plane joins them: {folder}");
-        session.voice.warnings([&text]);
-    }
-    Ok(())
-}
-
-/// A part of whose photographs none is there has nothing to add.
-fn given(lifted: Result<LiftedSuperpixels, ImageryError>) -> Result<Option<LiftedSuperpixels>> {
-    match lifted {
-        Err(ImageryError::NothingFound { .. } | ImageryError::NoImages { .. }) => Ok(None),
-        lifted => Ok(Some(without_missing(lifted?))),
-    }
-}
-
-fn anchor_all(
-    parts: &mut [Part],
-    source: Option<&SuperpixelSource>,
-    args: &MergeArgs,
-    city: Option<&PreparedCity>,
-    session: &Session,
-) -> Result<()> {
-    let Some(city) = city else { return Ok(()) };
-    for (part, start) in parts.iter_mut().zip(&args.start) {
-        let lift = |source| given(lift_superpixels(&part.sfm, source, &SuperpixelOptions::default(), &()));
-        let superpixels = source.map(lift).transpose()?.flatten();
-        part.anchor = Some(anchor(part, superpixels.as_ref(), city, start, session)?);
-    }
-    Ok(())
-}
-
-/// Photographs of which only the shared ones were given are the normal case, no matter for a warning.
-fn without_missing(mut lifted: LiftedSuperpixels) -> LiftedSuperpixels {
-    lifted.warnings.retain(|w| !matches!(w, ImageryWarning::Missing { .. }));
-    lifted
-}
-
-fn anchor(
-    part: &Part,
-    superpixels: Option<&LiftedSuperpixels>,
-    city: &PreparedCity,
-    start: &Path,
-    session: &Session,
-) -> Result<Anchor> {
-    let options = AlignOptions::new(read_start(start)?).with_seed(session.common.seed);
-    let found = crate::align(city, &part.sfm, superpixels, &options, &session.voice.bar)?;
-    let anchor = Anchor::of(&found, &part.sfm, *options.start.city_from_sfm());
-    session.voice.detail(&format!("{}: {}", part.name, anchor.reason));
-    Ok(anchor)
 }
 
 /// The last components of the paths, with as many of their parents as it takes to tell them apart.

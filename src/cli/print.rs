@@ -7,6 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::format::{escaped, escaped_json};
+use crate::observer::{Observer, Stage};
 use anyhow::Context;
 
 use super::args::Common;
@@ -46,6 +47,16 @@ fn line_of(text: &str) -> String {
     let from_end = line.char_indices().rev().nth(LONGEST_LINE / 2 - 1).map(|(at, _)| at);
     let (head, tail) = (at(LONGEST_LINE / 2).unwrap_or_default(), from_end.unwrap_or_default());
     format!("{} ... {}", &line[..head], &line[tail..])
+}
+
+impl Observer for Voice {
+    fn progress(&self, stage: Stage, done: usize, all: usize) {
+        self.bar.progress(stage, done, all);
+    }
+
+    fn detail(&self, text: &str) {
+        Voice::detail(self, text);
+    }
 }
 
 impl Voice {

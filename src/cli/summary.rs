@@ -142,7 +142,7 @@ pub fn of_merge(merge: &Merge, output: &Path, files: &[&str], seconds: f64) -> S
 fn account_line(account: &Account) -> String {
     let mut line = format!("{} in = {} kept + {} fused", account.given, account.kept, account.fused);
     for (reason, count) in &account.dropped {
-        let _ = write!(line, " + {count} dropped ({reason})");
+        let _ = write!(line, " + {count} dropped ({})", reason.words());
     }
     line
 }

@@ -15,7 +15,7 @@ use super::ply::write_ply;
 use super::report::{ReportError, SimilarityJson, SupportJson, freedom_json};
 use crate::city::CityModel;
 use crate::geometry::Similarity;
-use crate::merging::{Account, Edge, Merge, PartPlace, PartSupport};
+use crate::merging::{Account, Edge, Merge, MergedFrame, PartPlace, PartSupport};
 use crate::verdict::Freedom;
 
 pub const MERGE_REPORT_FILE: &str = "merge.json";
@@ -44,7 +44,7 @@ pub fn write_merge(folder: &Path, merge: &Merge, city: Option<&CityModel>) -> Re
     let Some(model) = &merge.model else { return Ok(files) };
     let colors: Vec<[u8; 3]> =
         model.part_of_point.iter().map(|p| PART_COLORS[*p as usize % PART_COLORS.len()]).collect();
-    let city = city.filter(|_| merge.in_city);
+    let city = city.filter(|_| merge.frame == MergedFrame::City);
     let placed =
         Some(Placed { reconstruction: &model.sfm, point_colors: &colors, city_from_sfm: Similarity::identity() });
     let title = format!("{}: {}", merge.verdict.word(), merge.reason);
@@ -78,7 +78,7 @@ pub fn merge_report(merge: &Merge) -> Result<String, ReportError> {
         schema: SCHEMA,
         verdict: merge.verdict.word(),
         reason: &merge.reason,
-        frame: &merge.frame,
+        frame: merge.frame.words(),
         parts: merge.parts.iter().map(PartJson::of).collect::<Result<_, _>>()?,
         edges: merge.edges.iter().map(|e| EdgeJson::of(e, &merge.parts)).collect(),
         ledger: LedgerJson {
@@ -97,10 +97,10 @@ struct MergeJson<'a> {
     schema: &'static str,
     verdict: &'static str,
     reason: &'a str,
-    frame: &'a str,
+    frame: String,
     parts: Vec<PartJson<'a>>,
     edges: Vec<EdgeJson<'a>>,
-    ledger: LedgerJson<'a>,
+    ledger: LedgerJson,
     warnings: &'a [String],
     program: &'static str,
 }
@@ -177,23 +177,24 @@ impl EdgeJson<'_> {
 }
 
 #[derive(Serialize)]
-struct LedgerJson<'a> {
-    images: AccountJson<'a>,
-    points: AccountJson<'a>,
-    observations: AccountJson<'a>,
+struct LedgerJson {
+    images: AccountJson,
+    points: AccountJson,
+    observations: AccountJson,
 }
 
 #[derive(Serialize)]
-struct AccountJson<'a> {
+struct AccountJson {
     #[serde(rename = "in")]
     given: usize,
     kept: usize,
     fused: usize,
-    dropped: &'a BTreeMap<&'static str, usize>,
+    dropped: BTreeMap<&'static str, usize>,
 }
 
-impl AccountJson<'_> {
-    fn of(account: &Account) -> AccountJson<'_> {
-        AccountJson { given: account.given, kept: account.kept, fused: account.fused, dropped: &account.dropped }
+impl AccountJson {
+    fn of(account: &Account) -> AccountJson {
+        let dropped = account.dropped.iter().map(|(reason, count)| (reason.words(), *count)).collect();
+        AccountJson { given: account.given, kept: account.kept, fused: account.fused, dropped }
     }
 }

@@ -2,21 +2,45 @@
 
 use std::collections::BTreeMap;
 
-use super::{Fused, Part};
+use super::part::Part;
+use crate::reconstruction::Reconstruction;
 
-/// `in = kept + fused + sum(dropped)`.
+/// Why something of a part is not in the result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DropReason {
+    BehindCamera,
+    FarFromKeypoint,
+    NoObservationLeft,
+    PartNotPlaced,
+    SecondKeypoint,
+}
+
+impl DropReason {
+    /// The words that the report uses.
+    pub fn words(self) -> &'static str {
+        match self {
+            DropReason::BehindCamera => "behind camera",
+            DropReason::FarFromKeypoint => "far from its keypoint in the fused photograph",
+            DropReason::NoObservationLeft => "no observation left",
+            DropReason::PartNotPlaced => "part not placed",
+            DropReason::SecondKeypoint => "second keypoint of one point in a photograph",
+        }
+    }
+}
+
+/// What became of one kind of thing: `given = kept + fused + sum(dropped)`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Account {
     pub given: usize,
-    /// Stand in the result on their own.
+    /// What stands in the result on its own.
     pub kept: usize,
-    /// Became part of one that is kept.
+    /// What became part of one that is kept.
     pub fused: usize,
-    /// By reason.
-    pub dropped: BTreeMap<&'static str, usize>,
+    /// What is not in the result, by reason.
+    pub dropped: BTreeMap<DropReason, usize>,
 }
 
-/// Of all parts, the ones left out too.
+/// The accounts of all parts, the ones left out too.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ledger {
     pub images: Account,
@@ -40,10 +64,8 @@ pub struct Unbalanced {
     pub counted: usize,
 }
 
-pub(super) const NOT_PLACED: &str = "part not placed";
-
 impl Account {
-    pub(super) fn drop(&mut self, reason: &'static str, count: usize) {
+    pub(super) fn drop(&mut self, reason: DropReason, count: usize) {
         if count > 0 {
             *self.dropped.entry(reason).or_default() += count;
         }
@@ -51,7 +73,7 @@ impl Account {
 }
 
 impl Ledger {
-    /// What goes in; `left_out` parts are dropped at once.
+    /// What goes in; parts without a place are dropped at once.
     pub(super) fn open(parts: &[Part], is_placed: impl Fn(usize) -> bool) -> Ledger {
         let mut ledger = Ledger::default();
         for (index, part) in parts.iter().enumerate() {
@@ -60,7 +82,7 @@ impl Ledger {
             for (account, count) in accounts.into_iter().zip([images, points, observations]) {
                 account.given += count;
                 if !is_placed(index) {
-                    account.drop(NOT_PLACED, count);
+                    account.drop(DropReason::PartNotPlaced, count);
                 }
             }
         }
@@ -72,8 +94,8 @@ impl Ledger {
     }
 
     /// The accounts balance, with each other, with the parts and with the model itself.
-    pub(super) fn check(&self, parts: &[Part], model: Option<&Fused>) -> Result<(), Unbalanced> {
-        let in_model = model.map_or([0; 3], |m| counts(&m.sfm));
+    pub(super) fn check(&self, parts: &[Part], model: Option<&Reconstruction>) -> Result<(), Unbalanced> {
+        let in_model = model.map_or([0; 3], counts);
         let given = parts.iter().map(|p| counts(&p.sfm)).fold([0; 3], |s, c| [s[0] + c[0], s[1] + c[1], s[2] + c[2]]);
         let accounts = [("images", &self.images), ("points", &self.points), ("observations", &self.observations)];
         for ((what, account), (counted, given)) in accounts.into_iter().zip(in_model.into_iter().zip(given)) {
@@ -89,7 +111,7 @@ impl Ledger {
 }
 
 /// Images, points, keypoints that see a point.
-pub(super) fn counts(sfm: &crate::reconstruction::Reconstruction) -> [usize; 3] {
+fn counts(sfm: &Reconstruction) -> [usize; 3] {
     let linked = sfm.images.iter().map(|i| i.observations.iter().filter(|o| o.point.is_some()).count()).sum();
     [sfm.images.len(), sfm.points.len(), linked]
 }

@@ -1,11 +1,15 @@
-//! Estimation among wrong correspondences: random streams, the sampling loop, losses, normal equations.
+//! Estimation among wrong correspondences: random streams, the sampling loop, losses, order statistics, normal equations.
 
+mod chi_square;
 mod gauss_newton;
 mod loss;
+mod quantile;
 mod random;
 mod ransac;
 
+pub use chi_square::chi_square_beyond;
 pub use gauss_newton::{Chart, Direction, Matrix7, Motion, NormalEquations, Spectrum, Vector7};
 pub use loss::{tukey_weight, vote};
+pub use quantile::{median, quantile};
 pub use random::Random;
 pub use ransac::{Problem, Ranked, RansacOptions, ransac};

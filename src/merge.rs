@@ -1,0 +1,135 @@
+//! The joining of reconstructions on one page: superpixels of the photographs they share, places in a city, one model.
+//!
+//! Question     how do several reconstructions of one place, as they were read, become one, in a city where there is one?
+//! Input        the parts, each with a start where there is a city; label images or photographs, where there are any
+//! Output       [`Merge`]
+//! Method       photographs that several parts have are cut into superpixels that all of them see alike; each part is aligned to the city by
+//!              itself, which gives it an anchor; [`join`] does the rest
+//! Assumptions  as of [`crate::align()`] and [`join`]
+//! Fails when   a file of a photograph cannot be read; what cannot be joined is a verdict
+
+use std::collections::{BTreeSet, HashMap};
+
+use crate::align::{AlignOptions, align};
+use crate::geometry::Start;
+use crate::imagery::{
+    ImageryError, ImageryWarning, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels,
+    lift_superpixels_of,
+};
+use crate::limits::Limits;
+use crate::merging::{Anchor, JoinOptions, Merge, Part, Unbalanced, join};
+use crate::observer::{Cancelled, Observer};
+use crate::planes::PreparedCity;
+use crate::reconstruction::{Image, Reconstruction};
+
+/// One of the reconstructions to be joined, as it was read.
+#[derive(Clone, Debug)]
+pub struct MergePart {
+    /// Unique among the parts.
+    pub name: String,
+    pub sfm: Reconstruction,
+    /// Roughly where it stands in the city; without one it has no place there by itself.
+    pub start: Option<Start>,
+}
+
+/// What the user may set.
+#[derive(Clone, Debug, Default)]
+pub struct MergeOptions {
+    /// Where superpixels come from; without them points alone join the parts.
+    pub superpixels: Option<SuperpixelSource>,
+    pub join: JoinOptions,
+}
+
+/// Why parts could not be joined; what does not belong together is no error but a verdict.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    #[error(transparent)]
+    Imagery(#[from] ImageryError),
+    #[error(transparent)]
+    Unbalanced(#[from] Unbalanced),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Joins reconstructions, in the city where one is given.
+pub fn merge(
+    given: Vec<MergePart>,
+    city: Option<&PreparedCity>,
+    options: &MergeOptions,
+    observer: &dyn Observer,
+) -> Result<Merge, MergeError> {
+    let (mut parts, starts): (Vec<Part>, Vec<Option<Start>>) = given
+        .into_iter()
+        .map(|MergePart { name, sfm, start }| (Part { name, sfm, superpixels: None, anchor: None }, start))
+        .unzip();
+    let nothing_there = match &options.superpixels {
+        Some(source) => lift_shared(&mut parts, source, options, observer)?,
+        None => None,
+    };
+    if let Some(city) = city {
+        for (part, start) in parts.iter_mut().zip(starts) {
+            part.anchor = start.map(|start| anchor(part, &start, city, options, observer)).transpose()?;
+        }
+    }
+    let mut merged = join(&parts, &options.join, observer)?;
+    merged.warnings.extend(nothing_there);
+    Ok(merged)
+}
+
+/// Cuts the photographs that several parts have into superpixels; the others join nothing. A warning where none of them is there.
+fn lift_shared(
+    parts: &mut [Part],
+    source: &SuperpixelSource,
+    options: &MergeOptions,
+    observer: &dyn Observer,
+) -> Result<Option<String>, ImageryError> {
+    let mut parts_with: HashMap<String, usize> = HashMap::new();
+    for part in parts.iter() {
+        let names: BTreeSet<&String> = part.sfm.images.iter().map(|image| &image.name).collect();
+        names.into_iter().for_each(|name| *parts_with.entry(name.clone()).or_default() += 1);
+    }
+    let is_shared = |image: &Image| parts_with.get(&image.name).is_some_and(|count| *count > 1);
+    // Both parts must see the same superpixels, whatever keypoints each of them has.
+    let cut = SuperpixelOptions { count: options.join.limits.planes.superpixels, by_keypoints: false };
+    for part in parts.iter_mut() {
+        part.superpixels = what_is_there(lift_superpixels_of(&part.sfm, &is_shared, source, &cut, observer))?;
+    }
+    // Where no photograph is shared, labels and photographs are for the city.
+    let any_is_shared = parts_with.values().any(|count| *count > 1);
+    Ok((any_is_shared && parts.iter().all(|part| part.superpixels.is_none())).then(|| {
+        let folder = source.folder().display();
+        format!("no file there is that of a photograph that two parts share, so no plane joins them: {folder}")
+    }))
+}
+
+/// Where the city puts a part by itself.
+fn anchor(
+    part: &Part,
+    start: &Start,
+    city: &PreparedCity,
+    options: &MergeOptions,
+    observer: &dyn Observer,
+) -> Result<Anchor, MergeError> {
+    let lift = |source| what_is_there(lift_superpixels(&part.sfm, source, &SuperpixelOptions::default(), observer));
+    let superpixels = options.superpixels.as_ref().map(lift).transpose()?.flatten();
+    let limits = Limits { verdict: options.join.limits.verdict, ..Limits::default() };
+    let align_options = AlignOptions::new(*start).with_seed(options.join.seed).with_limits(limits);
+    let found = align(city, &part.sfm, superpixels.as_ref(), &align_options, observer)?;
+    let anchor = Anchor::of(&found, &part.sfm, *start.city_from_sfm());
+    observer.detail(&format!("{}: {}", part.name, anchor.reason));
+    Ok(anchor)
+}
+
+/// A part of whose photographs none is there has nothing to add. That only the shared ones are there is the normal case, and
+/// no matter for a warning.
+fn what_is_there(lifted: Result<LiftedSuperpixels, ImageryError>) -> Result<Option<LiftedSuperpixels>, ImageryError> {
+    match lifted {
+        Err(ImageryError::NothingFound { .. } | ImageryError::NoImages { .. }) => Ok(None),
+        Err(error) => Err(error),
+        Ok(mut lifted) => {
+            lifted.warnings.retain(|w| !matches!(w, ImageryWarning::Missing { .. }));
+            Ok(Some(lifted))
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Two parts with what they share: evidence, estimate, opinion.
+
+use rayon::prelude::*;
+
+use super::fit::{Fit, OwnFit};
+use super::joint::Tracks;
+use super::judge::{Opinion, judge};
+use super::plane_search::fit_planes;
+use super::plane_testimony::PlaneTestimony;
+use super::planes::PlaneEvidence;
+use super::superpixel_planes::superpixel_planes;
+use super::track_evidence::{TrackEvidence, shared_tracks};
+use super::track_fit::fit_tracks;
+use super::track_testimony::TrackTestimony;
+use crate::merging::limits::MergeLimits;
+use crate::merging::outcome::{Edge, EdgeSource};
+use crate::merging::prepared::PreparedPart;
+use crate::merging::shared_photos::{SharedPhoto, shared_photos};
+
+/// What is taken from the shared photographs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EvidenceChoice {
+    /// Point pairs, camera poses, and planes where the parts have superpixels.
+    #[default]
+    All,
+    /// The planes of superpixels alone, to study them.
+    Planes,
+}
+
+/// Two parts after they were compared.
+#[derive(Clone, Debug)]
+pub(in crate::merging) struct Pair {
+    /// What is told of it.
+    pub edge: Edge,
+    pub fit: Option<Fit>,
+    pub opinion: Opinion,
+}
+
+/// What is compared, and how.
+pub(in crate::merging) struct Comparison<'a> {
+    pub parts: &'a [PreparedPart<'a>],
+    /// The parts by their content.
+    pub order: &'a [usize],
+    pub evidence: EvidenceChoice,
+    pub limits: &'a MergeLimits,
+    pub seed: u64,
+}
+
+/// Two parts that share photographs.
+struct Couple {
+    a: usize,
+    b: usize,
+    photos: Vec<SharedPhoto>,
+}
+
+impl Comparison<'_> {
+    /// All pairs of parts that share photographs.
+    pub fn pairs(&self) -> Vec<Pair> {
+        let couples: Vec<Couple> = self.couples();
+        self.prepare_surfaces(&couples);
+        couples.into_par_iter().map(|couple| self.compare(couple)).collect()
+    }
+
+    fn couples(&self) -> Vec<Couple> {
+        let mut couples = Vec::new();
+        for (i, &a) in self.order.iter().enumerate() {
+            for &b in &self.order[i + 1..] {
+                let photos = shared_photos(self.parts[a].sfm(), self.parts[b].sfm());
+                if !photos.is_empty() {
+                    couples.push(Couple { a, b, photos });
+                }
+            }
+        }
+        couples
+    }
+
+    /// Makes the surfaces of the parts whose planes will be heard, each part's once.
+    fn prepare_surfaces(&self, couples: &[Couple]) {
+        if self.evidence == EvidenceChoice::Planes {
+            return;
+        }
+        let has_superpixels =
+            |couple: &&Couple| [couple.a, couple.b].map(|p| self.parts[p].has_superpixels()) == [true; 2];
+        let mut wanted: Vec<usize> = couples.iter().filter(has_superpixels).flat_map(|c| [c.a, c.b]).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        wanted.into_par_iter().for_each(|p| {
+            self.parts[p].surfaces();
+        });
+    }
+
+    fn compare(&self, Couple { a, b, photos }: Couple) -> Pair {
+        let parts = [&self.parts[a], &self.parts[b]];
+        let planes = superpixel_planes(parts, &photos, self.limits);
+        let evidence = shared_tracks(parts, photos, self.limits);
+        let found = match self.evidence {
+            EvidenceChoice::All => self.by_all(parts, &evidence, planes.as_ref()),
+            EvidenceChoice::Planes => self.by_planes(parts, &evidence, planes.as_ref()),
+        };
+        let edge = Edge {
+            a,
+            b,
+            source: found.source,
+            shared_photos: evidence.photos.into_iter().map(|p| p.name).collect(),
+            pairs: found.pairs,
+            inliers: found.fit.as_ref().map_or(0, Fit::inlier_count),
+            rms: found.fit.as_ref().map_or(0.0, |f| f.rms),
+            used: found.opinion == Opinion::Together,
+            reason: match &found.opinion {
+                Opinion::Together => (!found.notes.is_empty()).then(|| found.notes.join("; ")),
+                Opinion::Open(reason) | Opinion::Apart(reason) => Some(reason.clone()),
+            },
+        };
+        Pair { edge, fit: found.fit, opinion: found.opinion }
+    }
+
+    fn by_all(&self, parts: [&PreparedPart<'_>; 2], evidence: &TrackEvidence, planes: Option<&PlaneEvidence>) -> Found {
+        let (limits, seed) = (self.limits, self.seed);
+        let by_tracks = fit_tracks(evidence, limits, seed);
+        let joint = by_tracks.as_ref().map(|found| {
+            let tracks = Tracks { evidence, found, limits };
+            match planes {
+                Some(planes) => tracks.on_whole_parts(tracks.with_planes(planes, seed), parts),
+                None => tracks.alone(None),
+            }
+        });
+        let testimony = TrackTestimony { evidence, fit: joint.as_ref().map(|j| &j.fit), limits, seed };
+        let opinion = judge(&testimony, evidence, parts.map(PreparedPart::name), limits);
+        let contradiction = joint.as_ref().and_then(|j| j.contradiction.clone());
+        let opinion = match (opinion, contradiction) {
+            (Opinion::Together, Some(contradiction)) => Opinion::Open(contradiction),
+            (opinion, _) => opinion,
+        };
+        let cameras_used = by_tracks.iter().flat_map(|t| &t.cameras_used);
+        let left_out = cameras_left_out(cameras_used.filter(|used| !**used).count(), evidence.cameras.len());
+        let (fit, note) = joint.map_or((None, None), |j| (Some(j.fit), j.note));
+        let notes = left_out.into_iter().chain(note).collect();
+        Found { source: EdgeSource::Tracks, pairs: evidence.pairs.len(), fit, opinion, notes }
+    }
+
+    fn by_planes(
+        &self,
+        parts: [&PreparedPart<'_>; 2],
+        evidence: &TrackEvidence,
+        planes: Option<&PlaneEvidence>,
+    ) -> Found {
+        let (limits, seed) = (self.limits, self.seed);
+        let found: Option<OwnFit> = planes.and_then(|planes| fit_planes(planes, limits, seed));
+        let testimony = PlaneTestimony { planes, found: found.as_ref(), limits, seed };
+        let opinion = judge(&testimony, evidence, parts.map(PreparedPart::name), limits);
+        let pairs = planes.map_or(0, PlaneEvidence::correspondences);
+        Found { source: EdgeSource::Superpixels, pairs, fit: found.map(|f| f.fit), opinion, notes: Vec::new() }
+    }
+}
+
+/// What was found out about a couple.
+struct Found {
+    source: EdgeSource,
+    pairs: usize,
+    fit: Option<Fit>,
+    opinion: Opinion,
+    /// What is to be said although the parts are joined.
+    notes: Vec<String>,
+}
+
+fn cameras_left_out(count: usize, all: usize) -> Option<String> {
+    (count > 0).then(|| {
+        format!("the poses of {count} of {all} shared photographs disagree with the point pairs and were left out")
+    })
+}

@@ -1,0 +1,139 @@
+//! What points on planes of superpixels answer to the judge.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::fit::{Fit, OwnFit};
+use super::judge::{Opinion, Stretch, Testimony, Words, mirrored};
+use super::on_planes::{share_on_planes, too_few};
+use super::plane_search::fit_planes;
+use super::planes::{Measured, PlaneEvidence};
+use crate::geometry::{Matrix3, Vector3};
+use crate::merging::limits::MergeLimits;
+use crate::robust::quantile;
+
+pub(super) struct PlaneTestimony<'a> {
+    pub planes: Option<&'a PlaneEvidence>,
+    pub found: Option<&'a OwnFit>,
+    pub limits: &'a MergeLimits,
+    pub seed: u64,
+}
+
+impl Testimony for PlaneTestimony<'_> {
+    fn words(&self) -> Words {
+        Words { holds: "planes of the superpixels", counted: "points on planes" }
+    }
+
+    fn lacking(&self) -> Option<Opinion> {
+        let nothing = "no superpixel of the shared photographs has a plane in one part and points in the other";
+        match self.planes {
+            None => Some(Opinion::Open(nothing.to_owned())),
+            Some(planes) => too_few(planes, &self.limits.judge).map(Opinion::Open),
+        }
+    }
+
+    fn fit(&self) -> Result<&Fit, String> {
+        let nothing = "no similarity lays the points of one part on the planes of the other";
+        self.found.map(|found| &found.fit).ok_or_else(|| nothing.to_owned())
+    }
+
+    /// Points lie on their planes, better than in the mirror and better than chance.
+    fn refused(&self, fit: &Fit) -> Option<Opinion> {
+        let (planes, limits) = (self.planes?, &self.limits.judge);
+        let share = share_on_planes(planes, &fit.a_from_b, self.limits.sources.on_plane);
+        if let Some(opinion) = mirrored(self.best_share(&planes.mirrored()) / share, limits) {
+            return Some(opinion);
+        }
+        let chance = self.best_share(&planes.shuffled());
+        (share < limits.agreeing_share || share < limits.chance_factor * chance).then(|| {
+            Opinion::Apart(format!(
+                "only {:.0} % of the points lie on the planes of their superpixels ({:.0} % on those of other superpixels); the \
+                 photographs may be different ones with the same name",
+                100.0 * share,
+                100.0 * chance
+            ))
+        })
+    }
+
+    /// The affine map x + M y + t, y = (x - c) / rho, that lays the points best on their planes.
+    fn stretch(&self, fit: &Fit) -> Option<Stretch> {
+        let (planes, limits) = (self.planes?, &self.limits.judge);
+        let measured = planes.groups.iter().flat_map(|g| {
+            g.points.iter().map(|p| g.measured(p, &fit.a_from_b, 0.0, planes.radius)).filter(|m| !m.is_beside)
+        });
+        let measured: Vec<Measured> = measured.collect();
+        let center = measured.iter().map(|m| m.at.coords).sum::<Vector3<f64>>() / measured.len() as f64;
+        let radius = planes.radius[0];
+        let rows: Vec<SVector<f64, 12>> = measured.iter().map(|m| affine_row(m, &center, radius)).collect();
+        let (mut normal, mut right) = (SMatrix::<f64, 12, 12>::zeros(), SVector::<f64, 12>::zeros());
+        for (m, row) in measured.iter().zip(&rows) {
+            normal += row * row.transpose();
+            right -= row * m.residual;
+        }
+        let hold = limits.stretch_hold * normal.trace() / 12.0;
+        (0..9).for_each(|k| normal[(k, k)] += hold);
+        let solution = normal.cholesky()?.solve(&right);
+        let affine = Matrix3::identity() + Matrix3::from_column_slice(&solution.as_slice()[..9]) / radius;
+        let off = |(m, row): (&Measured, &SVector<f64, 12>)| (m.residual + row.dot(&solution)).abs();
+        let mut by_affine: Vec<f64> = measured.iter().zip(&rows).map(off).collect();
+        let mut by_similarity: Vec<f64> = measured.iter().map(|m| m.residual.abs()).collect();
+        let values = affine.singular_values();
+        let rest = quantile(&mut by_affine, limits.stretch_quantile)?
+            / quantile(&mut by_similarity, limits.stretch_quantile)?.max(f64::MIN_POSITIVE);
+        Some(Stretch { ratio: values.max() / values.min().max(f64::MIN_POSITIVE), rest })
+    }
+}
+
+impl PlaneTestimony<'_> {
+    /// Share of the points that the best similarity lays on their planes.
+    fn best_share(&self, planes: &PlaneEvidence) -> f64 {
+        let found = fit_planes(planes, self.limits, self.seed);
+        found.map_or(0.0, |found| share_on_planes(planes, &found.fit.a_from_b, self.limits.sources.on_plane))
+    }
+}
+
+/// Derivative of a point's distance from its plane in the nine of M, by columns, and the three of t.
+fn affine_row(m: &Measured, center: &Vector3<f64>, radius: f64) -> SVector<f64, 12> {
+    let outer = m.normal * ((m.at.coords - center) / radius).transpose();
+    let mut row = SVector::<f64, 12>::zeros();
+    row.fixed_rows_mut::<9>(0).copy_from_slice(outer.as_slice());
+    row.fixed_rows_mut::<3>(9).copy_from(&m.normal);
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::judge::stretched;
+    use super::super::test_scene::scene;
+    use super::*;
+    use crate::geometry::Point3;
+
+    fn opinion(planes: &PlaneEvidence) -> Option<Opinion> {
+        let limits = MergeLimits::default();
+        let found = fit_planes(planes, &limits, 5).unwrap();
+        let testimony = PlaneTestimony { planes: Some(planes), found: Some(&found), limits: &limits, seed: 5 };
+        testimony.refused(&found.fit).or_else(|| stretched(&testimony.stretch(&found.fit)?, &limits.judge))
+    }
+
+    #[test]
+    fn a_part_of_the_same_place_is_taken() {
+        assert_eq!(opinion(&scene(0.003, |x| *x)), None);
+    }
+
+    #[test]
+    fn a_mirrored_part_is_refused() {
+        let told = opinion(&scene(0.003, |x| Point3::new(-x.x, x.y, x.z)));
+        assert!(matches!(&told, Some(Opinion::Apart(reason)) if reason.contains("mirror")), "{told:?}");
+    }
+
+    #[test]
+    fn a_stretched_part_is_refused() {
+        let told = opinion(&scene(0.003, |x| Point3::new(x.x, x.y, 1.12 * x.z)));
+        assert!(matches!(&told, Some(Opinion::Apart(reason)) if reason.contains("stretched")), "{told:?}");
+    }
+
+    #[test]
+    fn superpixels_of_another_photograph_are_refused() {
+        let told = opinion(&scene(0.003, |x| *x).shuffled());
+        assert!(matches!(&told, Some(Opinion::Apart(reason)) if reason.contains("lie on the planes")), "{told:?}");
+    }
+}

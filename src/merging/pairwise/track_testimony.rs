@@ -1,0 +1,91 @@
+//! What point pairs answer to the judge.
+
+use super::fit::Fit;
+use super::judge::{Opinion, Stretch, Testimony, Words, mirrored};
+use super::point_rows::PointRows;
+use super::track_evidence::{PointPair, TrackEvidence};
+use super::track_fit::consensus;
+use crate::geometry::{Matrix3, Point3, Vector3};
+use crate::merging::limits::MergeLimits;
+use crate::robust::median;
+
+pub(super) struct TrackTestimony<'a> {
+    pub evidence: &'a TrackEvidence,
+    pub fit: Option<&'a Fit>,
+    pub limits: &'a MergeLimits,
+    pub seed: u64,
+}
+
+impl Testimony for TrackTestimony<'_> {
+    fn words(&self) -> Words {
+        Words { holds: "point pairs", counted: "point pairs" }
+    }
+
+    fn lacking(&self) -> Option<Opinion> {
+        let limits = &self.limits.judge;
+        let TrackEvidence { chance, fewer_keypoints, ref pairs, ref photos, .. } = *self.evidence;
+        let (count, photos) = (pairs.len(), photos.len());
+        let needed = (limits.chance_factor * chance).max(chance + limits.chance_sigmas * chance.sqrt());
+        (count as f64 <= needed || count < limits.fewest_pairs).then(|| {
+            Opinion::Apart(format!(
+                "the {photos} photographs of one name show different keypoints: {count} of {fewer_keypoints} coincide, chance \
+                 gives {chance:.0}; they may be different photographs with the same name"
+            ))
+        })
+    }
+
+    fn fit(&self) -> Result<&Fit, String> {
+        self.fit.ok_or_else(|| format!("no similarity explains {} point pairs", self.evidence.pairs.len()))
+    }
+
+    fn refused(&self, fit: &Fit) -> Option<Opinion> {
+        let limits = &self.limits.judge;
+        let (pairs, inliers) = (self.evidence.pairs.len(), fit.inlier_count());
+        if (inliers as f64) < limits.agreeing_share * pairs as f64 || inliers < limits.fewest_pairs {
+            return Some(Opinion::Apart(format!("only {inliers} of {pairs} point pairs agree with one similarity")));
+        }
+        let bend = fit.bend / self.evidence.radius_a;
+        if bend > limits.most_bend {
+            return Some(Opinion::Apart(format!(
+                "the point pairs disagree by {:.2} % of the extent, more than parts of one place do",
+                50.0 * bend
+            )));
+        }
+        mirrored(self.mirror_gain(fit), limits)
+    }
+
+    /// Of the inliers alone. Directions in which the pairs do not spread say nothing of stretch: they are held at that of the similarity.
+    fn stretch(&self, fit: &Fit) -> Option<Stretch> {
+        let inliers: Vec<&PointPair> =
+            self.evidence.pairs.iter().zip(&fit.inliers).filter(|(_, i)| **i).map(|(p, _)| p).collect();
+        let count = inliers.len() as f64;
+        let moved: Vec<Vector3<f64>> = inliers.iter().map(|p| fit.a_from_b.apply(&p.in_b).coords).collect();
+        let mean_x = moved.iter().sum::<Vector3<f64>>() / count;
+        let mean_y = inliers.iter().map(|p| p.in_a.coords).sum::<Vector3<f64>>() / count;
+        let (mut xx, mut yx) = (Matrix3::zeros(), Matrix3::zeros());
+        for (x, p) in moved.iter().zip(&inliers) {
+            let (dx, dy) = (x - mean_x, p.in_a.coords - mean_y);
+            xx += dx * dx.transpose();
+            yx += dy * dx.transpose();
+        }
+        let hold = xx.trace() * self.limits.judge.stretch_hold * Matrix3::identity();
+        let affine = (yx + hold) * (xx + hold).try_inverse()?;
+        let off = |(x, p): (&Vector3<f64>, &&PointPair)| (affine * (x - mean_x) - (p.in_a.coords - mean_y)).norm();
+        let mut by_affine: Vec<f64> = moved.iter().zip(&inliers).map(off).collect();
+        let mut by_similarity: Vec<f64> = moved.iter().zip(&inliers).map(|(x, p)| (x - p.in_a.coords).norm()).collect();
+        let values = affine.singular_values();
+        let rest = median(&mut by_affine)? / median(&mut by_similarity)?.max(f64::MIN_POSITIVE);
+        Some(Stretch { ratio: values.max() / values.min(), rest })
+    }
+}
+
+impl TrackTestimony<'_> {
+    /// How many times more of the pairs a similarity explains where part b is mirrored.
+    fn mirror_gain(&self, fit: &Fit) -> f64 {
+        let pairs = &self.evidence.pairs;
+        let rows = PointRows { bend: fit.bend, ..PointRows::new(pairs, self.evidence.radius_a, &self.limits.fit) };
+        let in_the_mirror: Vec<PointPair> =
+            pairs.iter().map(|p| PointPair { in_b: Point3::from(-p.in_b.coords), ..p.clone() }).collect();
+        consensus(&PointRows { pairs: &in_the_mirror, ..rows }, self.limits, self.seed) / rows.votes(&fit.a_from_b)
+    }
+}

@@ -11,6 +11,7 @@ pub mod city;
 pub mod reconstruction;
 pub mod imagery;
 pub mod solvers;
+pub mod problem;
 pub mod robust;
 pub mod planes;
 pub mod correspondence;

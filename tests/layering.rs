@@ -13,6 +13,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("reconstruction", &["geometry", "format"]),
     ("imagery", &["geometry", "format", "reconstruction"]),
     ("solvers", &["geometry"]),
+    ("problem", &["geometry", "format", "solvers"]),
     ("robust", &["geometry", "solvers"]),
     ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
     ("correspondence", &["limits", "geometry", "city", "planes", "solvers", "robust"]),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use cityweld::format::{JsonKind, read_text, text_from};
-use cityweld::solvers::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
+use cityweld::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
 
 use super::args::SolveArgs;
 use super::{Outcome, Session};

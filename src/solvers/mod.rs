@@ -25,7 +25,7 @@
 //! | [`upright_sim3_5pt`] | (2,1,1,1), (1,1,1,1,1) | 2 | 1.53, 1.57 |
 //!
 //! [`solve_minimal`] picks by the points per plane; [`Configuration`] tells what each costs. [`solve`] takes rows in any number and
-//! distribution, tells why a pose is not determined, and is what `cityweld solve` runs ([`problem`]); [`primitives`] turns points,
+//! distribution, tells why a pose is not determined, and is what `cityweld solve` runs; [`primitives`] turns points,
 //! lines and planes on either side into rows. [`refine`] polishes on any number of rows.
 
 // `!(a > b)` is meant: it refuses NaN. Loops over matrix indices read like the formulas that they are.
@@ -47,7 +47,6 @@ mod quadrics;
 mod quaternion;
 mod row;
 pub mod primitives;
-pub mod problem;
 pub mod scene;
 mod same_planes;
 mod singular;

@@ -33,6 +33,7 @@ mod city;
 mod reconstruction;
 mod imagery;
 pub mod solvers;
+pub mod problem;
 mod robust;
 mod planes;
 mod correspondence;

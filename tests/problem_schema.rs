@@ -4,7 +4,7 @@
 mod json_schema;
 mod needs;
 
-use cityweld::solvers::problem::{Refusal, answer_json, solve_json};
+use cityweld::problem::{Refusal, answer_json, solve_json};
 use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, sample};
 use cityweld::solvers::{Row, Sought, Up};
 use json_schema::keeps;

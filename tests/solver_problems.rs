@@ -2,8 +2,8 @@
 
 mod needs;
 
+use cityweld::problem::{Refusal, parse_problem, solve_json};
 use cityweld::solvers::primitives::{ObjectPrimitive, SensorPrimitive, rows_of};
-use cityweld::solvers::problem::{Refusal, parse_problem, solve_json};
 use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, pose, sample, up};
 use cityweld::solvers::{Degeneracy, Row, Solution, Sought, Up, condition_at, solve, solve_minimal};
 use cityweld::{Matrix3, Point3, Rotation3, Similarity, Vector3};

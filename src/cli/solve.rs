@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::format::{JsonKind, read_text, text_from};
-use crate::solvers::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
+use crate::problem::{LARGEST_PROBLEM_BYTES, Refusal, answer_json, solve_json};
 use anyhow::{Context, Result, bail};
 
 use super::args::SolveArgs;

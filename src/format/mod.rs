@@ -8,6 +8,7 @@ pub mod gltf;
 mod kind;
 pub mod obj;
 mod placement;
+mod problem;
 pub mod ply;
 mod start;
 mod text;
@@ -18,6 +19,9 @@ pub use escape::escaped;
 pub use escape::escaped_json;
 pub use kind::JsonKind;
 pub use placement::PlacementError;
+pub use problem::{
+    IllFormed, LARGEST_PROBLEM_BYTES, Primitive, ProblemKind, StoredPairs, StoredPlane, StoredUp, read_problem,
+};
 pub use start::read_start;
 #[cfg(feature = "cli")]
 pub use text::text_from;

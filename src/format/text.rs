@@ -1,9 +1,9 @@
 //! Text as editors and shells save it: UTF-8 with a byte order mark or without, or the UTF-16 of a redirected PowerShell.
 
-use std::io::{self, Error, ErrorKind, Read};
+use std::io::{self, Error, ErrorKind};
 use std::path::Path;
 
-use super::file::{read_at_most, read_regular};
+use super::file::read_regular;
 
 /// The longest report of a large city has some megabytes; a file beyond this is another file given by mistake.
 pub const LARGEST_TEXT_BYTES: u64 = 64 << 20;
@@ -15,8 +15,8 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
 
 /// The text of a stream, up to `limit` bytes.
 #[cfg(feature = "cli")]
-pub fn text_from(stream: impl Read, limit: u64) -> io::Result<String> {
-    text_of(read_at_most(stream, 0, limit)?)
+pub fn text_from(stream: impl std::io::Read, limit: u64) -> io::Result<String> {
+    text_of(super::file::read_at_most(stream, 0, limit)?)
 }
 
 fn text_of(bytes: Vec<u8>) -> io::Result<String> {

@@ -31,13 +31,13 @@ fn bench(criterion: &mut Criterion) {
     let sampler = Sampler::new(&scene);
     let up = Up::new(&Vector3::z(), &Vector3::z()).expect("up is up");
     let sought = Sought::UprightSimilarity(up);
-    let panel = scene.votes.panel(limits.search.ranking_probes);
+    let point_subset = scene.level_cloud.point_subset(limits.search.ranking_points);
     let search = PoseSearch {
         scene: &scene,
         sampler: &sampler,
         sought,
         configuration: &sought.configurations()[0],
-        panel: &panel,
+        point_subset: &point_subset,
     };
     let mut random = Random::stream(1, 0);
     criterion.bench_function("draw of four pairs", |bencher| bencher.iter(|| sampler.draw(4, &mut random)));

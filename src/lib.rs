@@ -57,7 +57,7 @@ pub use align::{AlignOptions, Up, align};
 pub use error::Error;
 pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{
-    Alignment, Alternative, Certainty, Freedom, FreedomKind, FreedomUnit, ModelErrors, PlaneEvidence, SearchSummary,
+    Alignment, Alternative, Certainty, Freedom, FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary,
     Support, Verdict,
 };
 

@@ -10,7 +10,7 @@ pub struct Limits {
     /// How far what is known beforehand is believed, in sigmas. Derived: nine in a thousand of Gaussian errors of one freedom lie
     /// beyond three sigmas; what users are told.
     pub reach_sigmas: f64,
-    /// Cost of one squared sigma away from what is known beforehand, in shares of the vote. Chosen: three sigmas in one freedom (9)
+    /// Cost of one squared sigma away from what is known beforehand, in the unit of the score. Chosen: three sigmas in one freedom (9)
     /// cost as much as a small house, 3 %.
     pub prior_cost: f64,
     /// Levelling by walls and floors is not believed to be better than this, radians. Chosen: a degree.
@@ -18,7 +18,7 @@ pub struct Limits {
 
     /// Gates are multiples of this ... Chosen: what eaves, reveals and a model's error put between a point and its facet.
     pub model_unit_m: f64,
-    /// ... and so many sigmas of the cloud's noise. Derived: 95 % of Gaussian noise.
+    /// So many sigmas of the cloud's noise are added to it. Derived: 95 % of Gaussian noise.
     pub noise_sigmas: f64,
     /// Error of one plane of the model as a whole. Measured on the surveyed LoD2 models at hand: some centimetres.
     pub plane_sigma_m: f64,
@@ -36,14 +36,14 @@ pub struct Limits {
     /// down, radians. Derived: a right angle less 37 degrees, and some slack.
     pub tells_floors_rad: f64,
 
-    pub exposure: ExposureLimits,
+    pub exposure: FacetVisibilityLimits,
     pub patches: PatchLimits,
     pub up: UpLimits,
     pub search: SearchLimits,
     pub refinement: RefinementLimits,
-    pub walk: WalkLimits,
-    pub sight: SightLimits,
-    pub contenders: ContenderLimits,
+    pub walk: LineSearchLimits,
+    pub sight: OcclusionLimits,
+    pub null_poses: NullPoseLimits,
     pub evidence: EvidenceLimits,
     pub uncertainty: UncertaintyLimits,
     pub verdict: VerdictLimits,
@@ -51,7 +51,7 @@ pub struct Limits {
 
 /// Which facets somebody could have seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExposureLimits {
+pub struct FacetVisibilityLimits {
     /// Lines of sight start this far off the facet. Chosen: beyond the mortar between the walls of two houses.
     pub start_m: f64,
     /// What is nearer than this in front of a facet hides it. Chosen: nobody stands there.
@@ -98,7 +98,7 @@ pub struct UpLimits {
     pub most_known: usize,
     /// Optima are distinct beyond so many of their common sigmas. Derived: 99 % of Gaussian errors.
     pub distinct_sigmas: f64,
-    /// ... and comparable with at least this share of the best one's support. Measured on the scenes: level photographs of one facade
+    /// A direction is comparable with at least this share of the best one's support. Measured on the scenes: level photographs of one facade
     /// support it as a floor, seen by cameras that are turned by a quarter, with 0.6 to 0.8 of the right support.
     pub comparable_share: f64,
     /// What leaving the start costs for each squared sigma, shares of the support. Chosen: all of its reach as much as half of one
@@ -109,7 +109,7 @@ pub struct UpLimits {
     pub patches: UpHabits,
     /// Of cameras. Chosen: hands tilt a camera by a few degrees at random, and by half a degree as a habit.
     pub cameras: UpHabits,
-    /// So many votes off by a kernel stand in for what few voters cannot tell of their scatter. Measured on 173 captures.
+    /// So many observations off by a kernel stand in for what few observations cannot tell of their scatter. Measured on 173 captures.
     pub votes_of_kernel: f64,
     /// Nobody looks up at a building more steeply than this: sine of 50 degrees. Chosen.
     pub steepest_view: f64,
@@ -123,11 +123,11 @@ pub struct UpLimits {
 /// How voters for up err, radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UpHabits {
-    /// A voter this far off still votes, with a weight that has fallen to a quarter.
+    /// The weight of an observation this far off has fallen to a quarter.
     pub kernel_rad: f64,
-    /// The error that voters of one direction share, where they ask for an up across that direction ...
+    /// The error that voters of one direction share, where they ask for an up across that direction.
     pub shared_across_rad: f64,
-    /// ... and along it.
+    /// The same error along that direction.
     pub shared_along_rad: f64,
 }
 
@@ -143,18 +143,18 @@ pub struct SearchLimits {
     /// The best of each block of 64 samples, which are refined before they are ranked. Measured on two laser scans of which the model knows a
     /// tenth, five starts each: right poses, one sample in ten thousand, are among the best two or three of their blocks.
     pub best_of_block: usize,
-    /// Probes that refine and rank them. Derived: one vote in 200 more or less is noise beside that of a minimal sample.
-    pub improving_probes: usize,
+    /// Sample points that refine and rank them. Derived: one inlier in 200 more or less is noise beside that of a minimal sample.
+    pub local_optimization_points: usize,
     /// Gates of that refinement, one step each, and of the ranking after it, units. Derived: from a hypothesis's to what a refined pose is off
     /// by. Measured on the same scans: of the poses kept the right one is the first in five of six runs; a ranking gate of 2.3 left it
     /// behind a hundred in one.
-    pub improving_gates_units: &'static [f64],
+    pub local_optimization_gates_units: &'static [f64],
     pub ranking_gate_units: f64,
     /// Hypotheses that are refined further. Chosen.
     pub keep: usize,
-    /// Probes that rank a hypothesis within its block. Measured on the same scans: with 64 the right pose of one run in four is lost, with
+    /// Sample points that rank a hypothesis within its block. Measured on the same scans: with 64 the right pose of one run in four is lost, with
     /// 100 of none.
-    pub ranking_probes: usize,
+    pub ranking_points: usize,
     /// Gate of that ranking, units. Derived: a minimal sample extrapolates the noise of a few patches over the whole scene.
     pub gate_units: f64,
     /// Poses that move no corner of the scene by more than this are one place of the search. Chosen: well within the basin
@@ -169,22 +169,22 @@ pub struct SearchLimits {
     /// Two patches and their two planes stand at the same angle, by as much as this: cosines. Derived: they differ by at most the
     /// angles, of which there are two.
     pub same_cos: f64,
-    /// A row's own uncertainty: error of the model and of the patch's centre. Chosen ...
+    /// A row's own uncertainty: error of the model and of the patch's centre. Chosen.
     pub row_sigma_m: f64,
-    /// ... and what an uncertain rotation adds, per metre of distance from the middle of the cloud. Derived: a normal that is a
+    /// What an uncertain rotation adds to it, per metre of distance from the middle of the cloud. Derived: a normal that is a
     /// degree off.
     pub row_sigma_per_m: f64,
     /// A patch whose row is known to within this says nothing new. Chosen: three or four row sigmas.
-    pub learned_m: f64,
+    pub informative_sigma_m: f64,
     /// Patches drawn for a place in a sample until one can lie anywhere. Measured on laser scans of which the model knows a tenth: with one the
     /// right pose of the Delft blocks is missed in every other run.
     pub most_draws: usize,
-    /// ... where fewer than this share of the samples find planes for all their patches with one. Measured on 13 scenes: where models
+    /// They are drawn where fewer than this share of the samples find planes for all their patches with one. Measured on 13 scenes: where models
     /// lack most of what was seen 0 to 7 % do, else 12 to 63 %.
-    pub fed_share: f64,
+    pub feasible_share: f64,
     /// Patches that lie on the city: the others are trees, cars, and houses that the model lacks. Chosen: half.
     pub on_city: f64,
-    /// Time to draw one pair and to score one pose (on 200 probes, when these ranked), microseconds. Measured by `cargo bench --bench search` on one
+    /// Time to draw one pair and to score one pose (on 200 sample points, when these ranked), microseconds. Measured by `cargo bench --bench search` on one
     /// core of a shared EPYC, 2026-11-30; their ratio matters.
     pub pair_us: f64,
     pub score_us: f64,
@@ -196,30 +196,30 @@ pub struct RefinementLimits {
     /// A point whose foot lies farther outside its facet than this share of the gate is not on it. Chosen.
     pub outside_share: f64,
     /// Directions held worse than this are not moved by least squares. Chosen: a step of a metre is beyond every gate.
-    pub held_m: f64,
+    pub most_sigma_m: f64,
     /// Loose points, of unknown direction, are taken for a facet's own only this close to it, sigmas of a point. Derived: 99 % of
     /// Gaussian noise.
-    pub loose_gate_sigmas: f64,
-    /// ... and count for this much of a patch's point. Chosen: many of them lie there by chance.
-    pub loose_weight: f64,
+    pub unsegmented_gate_sigmas: f64,
+    /// Such points count for this much of a patch's point. Chosen: many of them lie there by chance.
+    pub unsegmented_weight: f64,
     /// Width of Tukey's biweight, sigmas. Derived: 95 % efficient on Gaussian noise.
     pub tukey_sigmas: f64,
     /// The narrowest gate that residuals may set, as a share of the widest. Chosen.
     pub least_gate_share: f64,
     /// Two poses that move no corner of the scene by more than this are one, units. Chosen.
     pub same_pose_units: f64,
-    /// Rounds of improvement, each with more probes, narrower gates and fewer poses. Chosen.
+    /// Rounds of improvement, each with more sample points, narrower gates and fewer poses. Chosen.
     pub stages: [StageLimits; 3],
-    /// Probes whose lines of sight are traced, and that rank at most. Derived: a larger panel changes the third digit.
-    pub sight_probes: usize,
-    pub most_voters: usize,
+    /// Sample points whose lines of sight are traced, and that rank at most. Derived: more points change the third digit.
+    pub traced_points: usize,
+    pub most_scoring_points: usize,
 }
 
 /// A round of improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageLimits {
-    /// Probes that refine and rank; all of the patches' where the cloud has fewer.
-    pub probes: usize,
+    /// Sample points that refine and rank; all of the patches' where the cloud has fewer.
+    pub sample_points: usize,
     /// Gates of refinement, one step each, and of ranking, units.
     pub gates_units: &'static [f64],
     pub ranking_gate_units: f64,
@@ -233,19 +233,19 @@ pub struct StageLimits {
 
 /// How poses are moved along what the data hold loosely or not at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WalkLimits {
+pub struct LineSearchLimits {
     /// Directions held worse than this are walked by the score. Chosen: a window's reveal.
     pub loose_m: f64,
-    /// Step of that walk in gates. Derived: votes change by little over half a gate.
+    /// Step of that walk in gates. Derived: the score changes by little over half a gate.
     pub step_of_gate: f64,
     /// Its greatest number of steps to either side. Chosen: a bound for starts that know nothing.
     pub most_steps: i32,
     /// Moves into neighbouring basins, units. Chosen: parallel planes of one facade stand some decimetres apart.
     pub basin_moves_units: [f64; 4],
-    /// Gates of refinement after such a move, units. Derived: as wide as a move, then as a vote.
+    /// Gates of refinement after such a move, units. Derived: as wide as a move, then as the score's.
     pub basin_gates_units: [f64; 4],
-    /// Probes that say which of two basins explains more. Chosen.
-    pub basin_probes: usize,
+    /// Sample points that say which of two basins explains more. Chosen.
+    pub basin_points: usize,
     /// Rounds of such moves. Chosen.
     pub most_rounds: usize,
     /// A walk by the score ends within this many units of the right place. Chosen.
@@ -256,60 +256,60 @@ pub struct WalkLimits {
 
 /// Poses fitted by chance, against which an answer's evidence is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContenderLimits {
-    /// Contenders that are asked for. Chosen: a chance of 2 % is then known to half of itself.
+pub struct NullPoseLimits {
+    /// Null poses that are asked for. Chosen: a chance of 2 % is then known to half of itself.
     pub count: usize,
-    /// Each round has a batch of samples for every contender that is asked for; there are no more rounds than so many. Chosen: a bound
+    /// Each round has a batch of samples for every null pose that is asked for; there are no more rounds than so many. Chosen: a bound
     /// for clouds of which few samples give a pose.
     pub most_rounds: u64,
     /// Samples in a batch, of which the best is taken. Measured on 114 wrong answers of generated captures: against single samples they exceed
     /// 2, 4, 6 and 8 bits in 23, 7, 4 and 2 %, as often as the four poses that an answer is chosen from on average allow at most; against the best
     /// of ten right poses lose a third of their bits.
     pub samples: usize,
-    /// Probes that choose the best of a batch. Derived: as the search's.
-    pub ranking_probes: usize,
-    /// Probes that refine it. Derived: as the search's first round.
-    pub refining_probes: usize,
-    /// Gates of refinement, units. Derived: from the search's to a vote's.
+    /// Sample points that choose the best of a batch. Derived: as the search's.
+    pub ranking_points: usize,
+    /// Sample points that refine it. Derived: as the search's first round.
+    pub refining_points: usize,
+    /// Gates of refinement, units. Derived: from the search's to the score's.
     pub gates_units: &'static [f64],
-    /// Contenders are sought at least so far from the start, metres. Chosen: a row of houses along a street.
+    /// Null poses are sought at least so far from the start, metres. Chosen: a row of houses along a street.
     pub least_reach_m: f64,
     /// Poses that differ by less than these (metres, radians, log scale) are led to one place by refinement. Measured on the scenes of
     /// known truth: 2 m, 6 degrees, 8 %.
     pub basin_m: f64,
     pub basin_rad: f64,
     pub basin_log_scale: f64,
-    /// The best contenders of other places, which are refined to the end and heard as rivals. Chosen: as many as the search's candidates.
+    /// The best null poses of other places, which are refined to the end and heard as rivals. Chosen: as many as the search's candidates.
     pub heard: usize,
 }
 
 /// What speaks for a pose, in bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvidenceLimits {
-    /// Coplanar pieces of the cloud are one witness: normals within this angle ... Measured on 369 poses: where each piece of a front
+    /// Coplanar pieces of the cloud are one observation: normals within this angle. Measured on 369 poses: where each piece of a front
     /// counts, wrong poses reach 86 bits, where the front counts once, 15.
     pub same_plane_deg: f64,
-    /// ... and centres within this of the larger one's plane, metres. Measured on the same poses.
+    /// Their centres must lie within this of the larger one's plane, metres. Measured on the same poses.
     pub same_plane_m: f64,
-    /// Probes of a piece that are looked up. Derived: a share of a piece is then known to a seventh.
-    pub probes: usize,
-    /// Probes of a piece whose lines of sight are traced. Chosen: two in three decide.
-    pub sight_probes: usize,
-    /// A probe lies on a facet within this distance, metres, ... Measured on the same poses: 0.2 to 0.5 m do alike.
+    /// Sample points of a piece that are looked up. Derived: a share of a piece is then known to a seventh.
+    pub sample_points: usize,
+    /// Sample points of a piece whose lines of sight are traced. Chosen: two in three decide.
+    pub traced_points: usize,
+    /// A sample point lies on a facet within this distance, metres. Measured on the same poses: 0.2 to 0.5 m do alike.
     pub tolerance_m: f64,
-    /// ... or within so many sigmas of the cloud's noise. Derived: 99.7 % of Gaussian noise.
+    /// The distance is at least so many sigmas of the cloud's noise. Derived: 99.7 % of Gaussian noise.
     pub tolerance_sigmas: f64,
     /// Points of the cloud that are asked whether the city hides them. Derived: a share is then known to 3 %.
-    pub hidden_probes: usize,
-    /// ... evenly over squares of this width, metres. Chosen: a house's width, since one house hides what lies in one.
+    pub occlusion_points: usize,
+    /// They are spread evenly over squares of this width, metres. Chosen: a house's width, since one house hides what lies in one.
     pub hidden_square_m: f64,
-    /// Contenders that met everything alike stand in for what few contenders cannot tell. Chosen: one.
-    pub unseen_contenders: f64,
+    /// Null poses that met everything alike stand in for what few null poses cannot tell. Chosen: one.
+    pub unseen_null_poses: f64,
 }
 
 /// When the city hides a point from its camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SightLimits {
+pub struct OcclusionLimits {
     /// The point's own surroundings do not hide it. Chosen: eaves, reveals and the model's error reach this far.
     pub surroundings_m: f64,
     /// The camera's own place may be off the model's free space by this much. Chosen.
@@ -321,8 +321,8 @@ pub struct SightLimits {
 pub struct UncertaintyLimits {
     /// Rounds in which the pose is estimated, each with points put on facets anew. Chosen.
     pub rounds: usize,
-    /// Points within this of a surface lie on it, units. Chosen: one and a half times a vote's, so that buildings which stand off are heard, and
-    /// count by what their tails give them.
+    /// Points within this of a surface lie on it, units. Chosen: one and a half times the score's, so that buildings which stand off are heard, and
+    /// count by what their heavy tails give them.
     pub gate_units: f64,
     /// Steps in which spreads and unknowns settle in a round. Chosen.
     pub steps: usize,
@@ -330,7 +330,7 @@ pub struct UncertaintyLimits {
     pub piece_m: f64,
     /// An object that is larger is no building, and is taken apart ... Chosen.
     pub largest_building_m: f64,
-    /// ... into squares of this width. Chosen: a building's width.
+    /// Larger objects are cut into squares of this width. Chosen: a building's width.
     pub square_m: f64,
     /// An object is built where its walls have more than this share of its other surface; else it is ground. Derived: a hall of 100 m, 8 m
     /// high, has 0.3; a quay of 3 m along a square of 60 m has 0.05.
@@ -346,7 +346,7 @@ pub struct UncertaintyLimits {
     pub building_sigma_m: f64,
     pub front_sigma_m: f64,
     pub piece_sigma_m: f64,
-    /// ... of the reconstruction's bending, as a share of its radius. Derived: reconstructions bend by 0.1 to 0.5 % of their extent at
+    /// Standard deviation of the reconstruction's bending, as a share of its radius. Derived: reconstructions bend by 0.1 to 0.5 % of their extent at
     /// most; two radii, and half of the most as root mean square. Measured: with 0.05 % four rendered scenes, which do not bend, come out better by
     /// a tenth (one by a half); with 0.1 % a generated one that does is `aligned` 1.1 m off at 0.15 m stated.
     pub bending_share: f64,
@@ -361,16 +361,16 @@ pub struct UncertaintyLimits {
     /// they are not (surveyed). Chosen: a lid alone still holds a height, if no better than a user asks for.
     pub lids_sigma_m: f64,
     pub roofs_sigma_m: f64,
-    /// Degrees of freedom of the tails of buildings, fronts, pieces and points. Chosen: between Cauchy's one and the four of Lange, Little and
+    /// Degrees of freedom of Student's t for buildings, fronts, pieces and points. Chosen: between Cauchy's one and the four of Lange, Little and
     /// Taylor (1989). Measured on 36 generated captures, a gate of two units: 0.26 m of error in the mean, where 8 with a gate of half a unit for the
     /// pose gave 0.31 m.
-    pub tails: f64,
+    pub student_dof: f64,
     /// Fewest buildings whose scatter is asked. Derived: as many as a pose has unknowns, and one.
     pub fewest_left_out: usize,
     /// What is common to all walls or tops, and bending, is told where it is so many sigmas beyond chance ... Derived: one in a thousand.
-    pub told_sigmas: f64,
-    /// ... and as large as this. Chosen: what a survey of buildings would note.
-    pub told_m: f64,
+    pub reported_sigmas: f64,
+    /// A common error is reported from this size on. Chosen: what a survey of buildings would note.
+    pub reported_m: f64,
     /// A freedom is confirmed where it is held to this many times what is asked when any one front is left out, whatever the other freedoms
     /// then are. Chosen.
     pub confirmed_times: f64,
@@ -385,14 +385,14 @@ pub struct VerdictLimits {
     pub same_m: f64,
     /// A freedom that the data hold worse than this is not determined, at the scene's radius. Chosen: a window's width is what a
     /// user would see.
-    pub determined_m: f64,
-    /// ... or than this share of the radius, where that is more. Chosen: reconstructions bend by as much.
-    pub determined_share: f64,
-    /// Gates that lead from a given scale to the data's own, units. Derived: from the search's to a vote's, step by step.
+    pub default_accuracy_m: f64,
+    /// The accuracy asked for as a share of the radius, where that is more. Chosen: reconstructions bend by as much.
+    pub default_accuracy_share: f64,
+    /// Gates that lead from a given scale to the data's own, units. Derived: from the search's to the score's, step by step.
     pub scale_gates_units: &'static [f64],
     /// The data contradict a given scale where theirs is so many sigmas away ... Derived: 99.7 % of Gaussian errors.
     pub scale_sigmas: f64,
-    /// ... and at the scene's radius at least so far. Derived: three sigmas of a plane of the model, which alone explain as much.
+    /// It must also be off at least so far at the scene's radius. Derived: three sigmas of a plane of the model, which alone explain as much.
     pub scale_m: f64,
 }
 
@@ -404,7 +404,7 @@ impl VerdictLimits {
 
     /// What a freedom must be held to where nothing else is asked for, metres at this radius.
     pub fn accuracy_m(&self, radius_m: f64) -> f64 {
-        self.determined_m.max(self.determined_share * radius_m)
+        self.default_accuracy_m.max(self.default_accuracy_share * radius_m)
     }
 }
 
@@ -422,7 +422,7 @@ impl Default for Limits {
             grazing_deg: 83.0,
             upright_sin: 0.2,
             tells_floors_rad: 0.8,
-            exposure: ExposureLimits {
+            exposure: FacetVisibilityLimits {
                 start_m: 0.06,
                 narrowest_gap_m: 0.5,
                 joint_m: 0.01,
@@ -456,11 +456,11 @@ impl Default for Limits {
                 most_samples: 65_536,
                 enough_hits: 10,
                 best_of_block: 3,
-                improving_probes: 200,
-                improving_gates_units: &[5.0, 2.3],
+                local_optimization_points: 200,
+                local_optimization_gates_units: &[5.0, 2.3],
                 ranking_gate_units: 1.3,
                 keep: 60,
-                ranking_probes: 100,
+                ranking_points: 100,
                 gate_units: 5.0,
                 same_place_m: 1.5,
                 smallest_target_m2: 1.0,
@@ -468,24 +468,24 @@ impl Default for Limits {
                 same_cos: 0.17,
                 row_sigma_m: 0.3,
                 row_sigma_per_m: 0.015,
-                learned_m: 1.0,
+                informative_sigma_m: 1.0,
                 most_draws: 6,
-                fed_share: 0.1,
+                feasible_share: 0.1,
                 on_city: 0.5,
                 pair_us: 0.6,
                 score_us: 16.0,
             },
             refinement: RefinementLimits {
                 outside_share: 0.5,
-                held_m: 1.0,
-                loose_gate_sigmas: 2.5,
-                loose_weight: 0.25,
+                most_sigma_m: 1.0,
+                unsegmented_gate_sigmas: 2.5,
+                unsegmented_weight: 0.25,
                 tukey_sigmas: 4.685,
                 least_gate_share: 0.2,
                 same_pose_units: 2.5,
                 stages: [
                     StageLimits {
-                        probes: 400,
+                        sample_points: 400,
                         gates_units: &[5.0, 5.0, 4.0, 3.3, 2.7],
                         ranking_gate_units: 2.3,
                         sight: false,
@@ -493,7 +493,7 @@ impl Default for Limits {
                         keep: 16,
                     },
                     StageLimits {
-                        probes: 1500,
+                        sample_points: 1500,
                         gates_units: &[2.7, 2.3, 2.0, 1.7, 1.7],
                         ranking_gate_units: 1.3,
                         sight: true,
@@ -501,7 +501,7 @@ impl Default for Limits {
                         keep: 6,
                     },
                     StageLimits {
-                        probes: usize::MAX,
+                        sample_points: usize::MAX,
                         gates_units: &[1.7, 1.3, 1.0, 1.0],
                         ranking_gate_units: 1.0,
                         sight: true,
@@ -509,27 +509,27 @@ impl Default for Limits {
                         keep: 6,
                     },
                 ],
-                sight_probes: 500,
-                most_voters: 3000,
+                traced_points: 500,
+                most_scoring_points: 3000,
             },
-            walk: WalkLimits {
+            walk: LineSearchLimits {
                 loose_m: 0.25,
                 step_of_gate: 0.5,
                 most_steps: 120,
                 basin_moves_units: [-2.0, -1.0, 1.0, 2.0],
                 basin_gates_units: [1.7, 1.3, 1.0, 1.0],
-                basin_probes: 1500,
+                basin_points: 1500,
                 most_rounds: 3,
                 settling_units: 4.0,
                 unmoved_share: 0.3,
             },
-            sight: SightLimits { surroundings_m: 0.7, camera_slack_m: 0.7 },
-            contenders: ContenderLimits {
+            sight: OcclusionLimits { surroundings_m: 0.7, camera_slack_m: 0.7 },
+            null_poses: NullPoseLimits {
                 count: 256,
                 most_rounds: 4,
                 samples: 1,
-                ranking_probes: 200,
-                refining_probes: 400,
+                ranking_points: 200,
+                refining_points: 400,
                 gates_units: &[5.0, 4.0, 3.3, 2.7, 2.0, 1.3, 1.0],
                 least_reach_m: 100.0,
                 basin_m: 2.0,
@@ -540,13 +540,13 @@ impl Default for Limits {
             evidence: EvidenceLimits {
                 same_plane_deg: 8.0,
                 same_plane_m: 0.5,
-                probes: 12,
-                sight_probes: 3,
+                sample_points: 12,
+                traced_points: 3,
                 tolerance_m: 0.3,
                 tolerance_sigmas: 3.0,
-                hidden_probes: 256,
+                occlusion_points: 256,
                 hidden_square_m: 12.0,
-                unseen_contenders: 1.0,
+                unseen_null_poses: 1.0,
             },
             uncertainty: UncertaintyLimits {
                 rounds: 2,
@@ -570,17 +570,17 @@ impl Default for Limits {
                 walls_sigma_m: 0.3,
                 lids_sigma_m: 0.25,
                 roofs_sigma_m: 0.1,
-                tails: 3.0,
+                student_dof: 3.0,
                 fewest_left_out: 8,
-                told_sigmas: 3.1,
-                told_m: 0.1,
+                reported_sigmas: 3.1,
+                reported_m: 0.1,
                 confirmed_times: 3.0,
             },
             verdict: VerdictLimits {
                 false_alarm: 0.001,
                 same_m: 0.8,
-                determined_m: 0.35,
-                determined_share: 0.01,
+                default_accuracy_m: 0.35,
+                default_accuracy_share: 0.01,
                 scale_gates_units: &[5.0, 5.0, 4.0, 3.3, 2.7, 2.3, 2.0, 1.7, 1.3, 1.0],
                 scale_sigmas: 3.0,
                 scale_m: 0.15,

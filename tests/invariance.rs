@@ -73,7 +73,7 @@ fn with_points(chosen: impl Fn(usize) -> Vec<usize> + Sync) -> Vec<String> {
 /// Scenes of twelve of which fewer points say something else. As measured; none should.
 const MOST_CHANGED_BY_HALF: usize = 4;
 const MOST_CHANGED_BY_A_QUARTER: usize = 6;
-/// A model in other facets offers its planes in another order, so that others are drawn as contenders: the bits of scenes at the very margin move by one or two.
+/// A model in other facets offers its planes in another order, so that others are drawn as null poses; bits of scenes at the very margin move by one or two.
 const MOST_CHANGED_BY_FACETS: usize = 3;
 
 #[test]

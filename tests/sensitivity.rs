@@ -6,8 +6,8 @@
 use std::sync::OnceLock;
 
 use cityweld::internals::{
-    ContenderLimits, EvidenceLimits, ExposureLimits, Limits, PatchLimits, RefinementLimits, SearchLimits, SightLimits,
-    UncertaintyLimits, UpLimits, VerdictLimits, WalkLimits,
+    EvidenceLimits, FacetVisibilityLimits, Limits, LineSearchLimits, NullPoseLimits, OcclusionLimits, PatchLimits,
+    RefinementLimits, SearchLimits, UncertaintyLimits, UpLimits, VerdictLimits,
 };
 use cityweld::synthetic::{Assessment, Case, Errand, Levels, Outcome, Repeated, Setting};
 use cityweld::{AlignOptions, PreparedCity, align};
@@ -66,15 +66,15 @@ numbers! {
         reach_sigmas, prior_cost, least_tilt_rad, model_unit_m, noise_sigmas, plane_sigma_m, least_point_sigma_m,
         same_normal_deg, grazing_deg, upright_sin, tells_floors_rad;
         whole: ;
-        not: exposure, patches, up, search, refinement, walk, sight, contenders, evidence, uncertainty, verdict
+        not: exposure, patches, up, search, refinement, walk, sight, null_poses, evidence, uncertainty, verdict
     }
     verdict: verdict as VerdictLimits {
-        false_alarm, same_m, determined_m, determined_share, scale_sigmas, scale_m;
+        false_alarm, same_m, default_accuracy_m, default_accuracy_share, scale_sigmas, scale_m;
         whole: ;
         // Steps of a path, not bounds.
         not: scale_gates_units
     }
-    exposure: exposure as ExposureLimits {
+    exposure: exposure as FacetVisibilityLimits {
         start_m, narrowest_gap_m, joint_m, open_m, large_triangle_m2; whole: ; not:
     }
     patches: patches as PatchLimits {
@@ -90,40 +90,40 @@ numbers! {
         not: patches, cameras
     }
     search: search as SearchLimits {
-        gate_units, same_place_m, smallest_target_m2, same_angle_rad, same_cos, row_sigma_m, row_sigma_per_m, learned_m,
-        ranking_gate_units, fed_share, on_city, pair_us, score_us;
-        whole: most_draws, fewest_samples, most_samples, enough_hits, best_of_block, improving_probes, keep, ranking_probes;
+        gate_units, same_place_m, smallest_target_m2, same_angle_rad, same_cos, row_sigma_m, row_sigma_per_m, informative_sigma_m,
+        ranking_gate_units, feasible_share, on_city, pair_us, score_us;
+        whole: most_draws, fewest_samples, most_samples, enough_hits, best_of_block, local_optimization_points, keep, ranking_points;
         // A path of narrowing gates.
-        not: improving_gates_units
+        not: local_optimization_gates_units
     }
     refinement: refinement as RefinementLimits {
-        outside_share, held_m, loose_gate_sigmas, loose_weight, tukey_sigmas, least_gate_share, same_pose_units;
-        whole: sight_probes, most_voters;
+        outside_share, most_sigma_m, unsegmented_gate_sigmas, unsegmented_weight, tukey_sigmas, least_gate_share, same_pose_units;
+        whole: traced_points, most_scoring_points;
         // A path of narrowing gates.
         not: stages
     }
-    walk: walk as WalkLimits {
+    walk: walk as LineSearchLimits {
         loose_m, step_of_gate, settling_units, unmoved_share;
-        whole: basin_probes, most_rounds;
+        whole: basin_points, most_rounds;
         // Counts with a sign, and a path of moves and gates.
         not: most_steps, basin_moves_units, basin_gates_units
     }
-    sight: sight as SightLimits { surroundings_m, camera_slack_m; whole: ; not: }
-    contenders: contenders as ContenderLimits {
+    sight: sight as OcclusionLimits { surroundings_m, camera_slack_m; whole: ; not: }
+    null_poses: null_poses as NullPoseLimits {
         least_reach_m, basin_m, basin_rad, basin_log_scale;
-        whole: count, samples, ranking_probes, refining_probes, heard;
+        whole: count, samples, ranking_points, refining_points, heard;
         // A bound of time, and a path of narrowing gates.
         not: most_rounds, gates_units
     }
     evidence: evidence as EvidenceLimits {
-        same_plane_deg, same_plane_m, tolerance_m, tolerance_sigmas, hidden_square_m, unseen_contenders;
-        whole: probes, sight_probes, hidden_probes;
+        same_plane_deg, same_plane_m, tolerance_m, tolerance_sigmas, hidden_square_m, unseen_null_poses;
+        whole: sample_points, traced_points, occlusion_points;
         not:
     }
     uncertainty: uncertainty as UncertaintyLimits {
         gate_units, piece_m, largest_building_m, square_m, least_walls, least_lever_m, same_front_deg,
         same_front_m, building_sigma_m, front_sigma_m, piece_sigma_m, bending_share, building_worth, front_worth,
-        piece_worth, bending_worth, walls_sigma_m, lids_sigma_m, roofs_sigma_m, tails, told_sigmas, told_m, confirmed_times;
+        piece_worth, bending_worth, walls_sigma_m, lids_sigma_m, roofs_sigma_m, student_dof, reported_sigmas, reported_m, confirmed_times;
         whole: rounds, steps, fewest_left_out;
         not:
     }
@@ -216,7 +216,7 @@ fn no_wrong_pose_is_aligned_by_a_fifth_of_a_number_of_the_verdict() {
     for task in tasks() {
         println!("{}: {:?}", task.name(), task.outcome);
     }
-    let numbers: Vec<Number> = [verdict(), contenders(), evidence()].into_iter().flatten().collect();
+    let numbers: Vec<Number> = [verdict(), null_poses(), evidence()].into_iter().flatten().collect();
     let wrong = swept(&numbers);
     assert!(wrong.is_empty(), "{wrong:#?}");
 }

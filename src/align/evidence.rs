@@ -2,33 +2,33 @@
 
 use rayon::prelude::*;
 
-use crate::correspondence::{Candidate, Place, ProbeOnPlane, Refiner, Scene, settled};
-use crate::evidence::{Contest, Contestant};
+use crate::correspondence::{Basin, Candidate, PointPlaneMatch, PoseRefiner, Scene, refined_to_end};
+use crate::evidence::{CandidateEvaluation, EvaluatedCandidate};
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Matrix7};
-use crate::uncertainty::{Estimate, Findings, estimate};
-use crate::verdict::{Evidence, GivenScale, Hold, Rival};
+use crate::uncertainty::{Estimate, SystematicErrors, estimate};
+use crate::verdict::{Evidence, GivenScale, PoseInformation, Rival};
 
 /// The evidence, and the points that it rests on.
 pub(super) struct Gathered {
     pub evidence: Evidence,
     /// Which points lie on which planes in the best pose, sorted by plane.
-    pub rows: Vec<ProbeOnPlane>,
+    pub rows: Vec<PointPlaneMatch>,
     /// Points that belong to a patch.
-    pub firm: usize,
-    pub findings: Findings,
+    pub patch_points: usize,
+    pub findings: SystematicErrors,
 }
 
 /// All poses that may be right, each with its evidence: the best first, then by what evidence and start say together. The search's
 /// order holds, whose gates are the narrower, unless the evidence for another of its poses is sure.
-pub(super) fn heard(contest: &Contest, scene: &Scene, candidates: &[Candidate]) -> Vec<Contestant> {
-    let of_search = |candidate: &Candidate| Contestant {
+pub(super) fn heard(contest: &CandidateEvaluation, scene: &Scene, candidates: &[Candidate]) -> Vec<EvaluatedCandidate> {
+    let of_search = |candidate: &Candidate| EvaluatedCandidate {
         weighed: contest.weigh(&candidate.refined.city_from_level),
         candidate: candidate.clone(),
         by_chance: false,
     };
-    let likelihood = |c: &Contestant| c.weighed.bits + scene.prior.bits(&c.candidate.refined.city_from_level);
-    let mut all: Vec<Contestant> = candidates.iter().map(of_search).collect();
+    let likelihood = |c: &EvaluatedCandidate| c.weighed.bits + scene.prior.bits(&c.candidate.refined.city_from_level);
+    let mut all: Vec<EvaluatedCandidate> = candidates.iter().map(of_search).collect();
     let margin = scene.limits.verdict.margin_bits();
     let best = (1..all.len()).fold(0, |best, i| {
         let lead = if best == 0 { margin } else { 0.0 };
@@ -44,9 +44,9 @@ pub(super) fn heard(contest: &Contest, scene: &Scene, candidates: &[Candidate]) 
 
 /// Gathers what the verdict reads of the poses that were heard; `given_scale` where the scale was given, `accuracy_m` where one is asked for.
 pub(super) fn gather(
-    refiner: &Refiner,
-    contest: Option<&Contest>,
-    contestants: &[Contestant],
+    refiner: &PoseRefiner,
+    contest: Option<&CandidateEvaluation>,
+    contestants: &[EvaluatedCandidate],
     given_scale: Option<GivenScale>,
     accuracy_m: Option<f64>,
 ) -> Gathered {
@@ -54,27 +54,27 @@ pub(super) fn gather(
     let best = contestants.first().map(|best| estimate(refiner, &best.candidate.refined.city_from_level));
     let rows = best.as_ref().map_or(Vec::new(), |best| rows(refiner, &best.city_from_level));
     let hold = hold(refiner, best.as_ref(), given_scale, accuracy_m);
-    let findings = best.as_ref().map_or(Findings::default(), |best| best.findings);
+    let findings = best.as_ref().map_or(SystematicErrors::default(), |best| best.findings);
     let rivals = best.as_ref().map_or(Vec::new(), |best| rivals(refiner, contestants, &best.city_from_level));
     let by_chance = contest.map_or(&[][..], |contest| &contest.by_chance);
-    let speaks = |c: &Contestant| c.weighed.by_witness.iter().filter(|bits| **bits >= SPEAKS_BITS).count();
+    let speaks = |c: &EvaluatedCandidate| c.weighed.by_cloud_plane.iter().filter(|bits| **bits >= SPEAKS_BITS).count();
     let evidence = Evidence {
         rivals,
         hold,
-        witnesses: contest.map_or(0, Contest::witnesses),
+        witnesses: contest.map_or(0, CandidateEvaluation::cloud_planes),
         speaking: contestants.first().map_or(0, speaks),
         by_chance: by_chance.len(),
         most_by_chance: by_chance.first().copied().unwrap_or(0.0),
     };
-    Gathered { evidence, rows, firm: scene.votes.firm, findings }
+    Gathered { evidence, rows, patch_points: scene.level_cloud.patch_points, findings }
 }
 
 /// The poses as the verdict compares them: the best as estimated, and so those about it, since what the last estimate leads to the best
 /// pose is no rival; the search's own gates leave some poses half-way.
-fn rivals(refiner: &Refiner, contestants: &[Contestant], best: &Similarity) -> Vec<Rival> {
+fn rivals(refiner: &PoseRefiner, contestants: &[EvaluatedCandidate], best: &Similarity) -> Vec<Rival> {
     let Some((first, others)) = contestants.split_first() else { return Vec::new() };
-    let place = Place::around(refiner, best);
-    let last = |c: &Contestant| {
+    let place = Basin::around(refiner, best);
+    let last = |c: &EvaluatedCandidate| {
         let pose = c.candidate.refined.city_from_level;
         if place.has(&pose) { estimate(refiner, &pose).city_from_level } else { pose }
     };
@@ -85,10 +85,15 @@ fn rivals(refiner: &Refiner, contestants: &[Contestant], best: &Similarity) -> V
 /// A plane speaks for a pose from so many bits on. Chosen: what chance gives to two in three.
 const SPEAKS_BITS: f64 = 0.5;
 
-fn hold(refiner: &Refiner, best: Option<&Estimate>, given_scale: Option<GivenScale>, accuracy_m: Option<f64>) -> Hold {
+fn hold(
+    refiner: &PoseRefiner,
+    best: Option<&Estimate>,
+    given_scale: Option<GivenScale>,
+    accuracy_m: Option<f64>,
+) -> PoseInformation {
     let (scene, limits) = (refiner.scene, refiner.scene.limits);
     let chart = best.map_or_else(|| chart_of_prior(refiner), |best| best.chart);
-    Hold {
+    PoseInformation {
         chart: Chart { center: chart.center + scene.city.model.origin, ..chart },
         information: best.map_or_else(Matrix7::zeros, |best| best.information),
         without: best.map_or(Vec::new(), |best| best.without.clone()),
@@ -99,35 +104,40 @@ fn hold(refiner: &Refiner, best: Option<&Estimate>, given_scale: Option<GivenSca
     }
 }
 
-fn rows(refiner: &Refiner, pose: &Similarity) -> Vec<ProbeOnPlane> {
-    let all: Vec<u32> = (0..refiner.scene.votes.probes.len() as u32).collect();
-    refiner.probes_on_planes(&all, pose, refiner.scene.unit_m)
+fn rows(refiner: &PoseRefiner, pose: &Similarity) -> Vec<PointPlaneMatch> {
+    let all: Vec<u32> = (0..refiner.scene.level_cloud.sample_points.len() as u32).collect();
+    refiner.point_plane_matches(&all, pose, refiner.scene.gate_unit_m)
 }
 
-fn rival(refiner: &Refiner, contestant: &Contestant, city_from_level: &Similarity) -> Rival {
+fn rival(refiner: &PoseRefiner, contestant: &EvaluatedCandidate, city_from_level: &Similarity) -> Rival {
     let (scene, candidate) = (refiner.scene, &contestant.candidate);
     let local = scene.city_from_sfm(city_from_level);
     Rival {
         city_from_sfm: Similarity { translation: local.translation + scene.city.model.origin, ..local },
         bits: contestant.weighed.bits,
-        bits_of_start: scene.prior.bits(city_from_level),
+        prior_bits: scene.prior.bits(city_from_level),
         beyond_start: !scene.prior.reaches(&candidate.refined.city_from_level),
         by_chance: contestant.by_chance,
     }
 }
 
 /// Where nothing was found: about the place that is expected.
-fn chart_of_prior(refiner: &Refiner) -> Chart {
+fn chart_of_prior(refiner: &PoseRefiner) -> Chart {
     refiner.assess(&[], &refiner.scene.prior.expected(), 0.0).chart
 }
 
 /// The scale that the data have, were it free, from a pose on.
-pub(super) fn scale_of_data(refiner: &Refiner, contest: &Contest, best: &Contestant) -> GivenScale {
+pub(super) fn scale_of_data(
+    refiner: &PoseRefiner,
+    contest: &CandidateEvaluation,
+    best: &EvaluatedCandidate,
+) -> GivenScale {
     let (scene, free) = (refiner.scene, &refiner.with_free_scale());
-    let firm: Vec<u32> = (0..scene.votes.firm as u32).collect();
-    let gates_m: Vec<f64> = scene.limits.verdict.scale_gates_units.iter().map(|gate| gate * scene.unit_m).collect();
-    let near = free.refine(&firm, &best.candidate.refined.city_from_level, &gates_m).city_from_level;
-    let pose = &settled(free, &near).city_from_level;
+    let patch_points: Vec<u32> = (0..scene.level_cloud.patch_points as u32).collect();
+    let gates_m: Vec<f64> =
+        scene.limits.verdict.scale_gates_units.iter().map(|gate| gate * scene.gate_unit_m).collect();
+    let near = free.refine(&patch_points, &best.candidate.refined.city_from_level, &gates_m).city_from_level;
+    let pose = &refined_to_end(free, &near).city_from_level;
     let found = estimate(free, pose);
     let (pose, chart) = (&found.city_from_level, found.chart);
     // What is known beforehand of all else keeps an open height from opening the scale.
@@ -135,7 +145,7 @@ pub(super) fn scale_of_data(refiner: &Refiner, contest: &Contest, best: &Contest
     information[(6, 6)] = 0.0;
     information += found.information;
     let variance = information.try_inverse().map_or(0.0, |covariance| covariance[(6, 6)]);
-    let given = scene.votes.level_from_sfm.scale;
+    let given = scene.level_cloud.level_from_sfm.scale;
     GivenScale {
         given,
         of_data: given * pose.scale,

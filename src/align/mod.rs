@@ -7,8 +7,8 @@ mod report;
 use std::f64::consts::PI;
 
 use self::evidence::Gathered;
-use crate::correspondence::{Candidate, Hypotheses, Refiner, Scene, candidates, joined, search};
-use crate::evidence::Contest;
+use crate::correspondence::{Candidate, Hypotheses, PoseRefiner, Scene, candidates, joined, search};
+use crate::evidence::CandidateEvaluation;
 use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
@@ -16,7 +16,7 @@ use crate::observer::{Cancelled, Observer, Stage, go_on};
 use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
-use crate::verdict::{Alignment, Ruling, Verdict, judge};
+use crate::verdict::{Alignment, Decision, Verdict, judge};
 
 /// Which way is up in the reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -135,7 +135,7 @@ struct View<'a> {
 
 /// What was found, and what is said of it.
 struct Outcome {
-    ruling: Ruling,
+    ruling: Decision,
     found: Gathered,
     hypotheses: Hypotheses,
 }
@@ -162,11 +162,11 @@ impl<'a> Task<'a> {
         let contest = view
             .candidates
             .first()
-            .map(|best| Contest::new(&surroundings, self.patches, &best.refined, self.options.seed));
+            .map(|best| CandidateEvaluation::new(&surroundings, self.patches, &best.refined, self.options.seed));
         let contestants =
             contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
         go_on(self.observer)?;
-        let refiner = Refiner::new(&view.scene);
+        let refiner = PoseRefiner::new(&view.scene);
         let given_scale = self
             .options
             .fixed_scale
@@ -180,17 +180,18 @@ impl<'a> Task<'a> {
     fn best_view(&self, motion: Motion) -> Result<View<'a>, Cancelled> {
         let uprights = uprights(self.patches, self.start, self.options.up, &self.options.limits);
         let mut views = uprights.iter().map(|upright| self.view(upright, motion)).collect::<Result<Vec<View>, _>>()?;
-        let balance = |view: &View| view.candidates.first().map_or(f64::NEG_INFINITY, Candidate::balance);
-        let at = (0..views.len()).max_by(|&a, &b| balance(&views[a]).total_cmp(&balance(&views[b])).then(b.cmp(&a)));
+        let total_score = |view: &View| view.candidates.first().map_or(f64::NEG_INFINITY, Candidate::total_score);
+        let at =
+            (0..views.len()).max_by(|&a, &b| total_score(&views[a]).total_cmp(&total_score(&views[b])).then(b.cmp(&a)));
         let mut best = views.swap_remove(at.unwrap_or(0));
-        let sfm_from_level = best.scene.votes.level_from_sfm.inverse();
+        let sfm_from_level = best.scene.level_cloud.level_from_sfm.inverse();
         let seen_from_best = |view: View<'a>| {
-            let other_from_level = view.scene.votes.level_from_sfm * sfm_from_level;
+            let other_from_level = view.scene.level_cloud.level_from_sfm * sfm_from_level;
             view.candidates.into_iter().map(move |candidate| (other_from_level, candidate))
         };
         let others: Vec<(Similarity, Candidate)> = views.into_iter().flat_map(seen_from_best).collect();
         if !others.is_empty() {
-            best.candidates = joined(&Refiner::new(&best.scene), best.candidates, &others);
+            best.candidates = joined(&PoseRefiner::new(&best.scene), best.candidates, &others);
         }
         Ok(best)
     }
@@ -198,7 +199,7 @@ impl<'a> Task<'a> {
     fn view(&self, upright: &Upright, motion: Motion) -> Result<View<'a>, Cancelled> {
         let scene = Scene::new(self.city, self.patches, self.start, motion, upright, &self.options.limits);
         let hypotheses = search(&scene, self.options.seed, self.observer)?;
-        let candidates = candidates(&Refiner::new(&scene), &hypotheses);
+        let candidates = candidates(&PoseRefiner::new(&scene), &hypotheses);
         go_on(self.observer)?;
         Ok(View { upright: *upright, scene, hypotheses, candidates })
     }
@@ -207,7 +208,7 @@ impl<'a> Task<'a> {
     fn surroundings(&self, view: &View) -> Scene<'a> {
         let limits = &self.options.limits;
         let StartSigmas { position_m, .. } = *self.start.sigmas();
-        let least_m = limits.contenders.least_reach_m / limits.reach_sigmas;
+        let least_m = limits.null_poses.least_reach_m / limits.reach_sigmas;
         let sigmas = StartSigmas { position_m: position_m.max(least_m), heading_rad: PI, ..*self.start.sigmas() };
         let start = self.start.with_sigmas(sigmas);
         Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits)
@@ -230,7 +231,7 @@ fn uprights(patches: &Patches, start: &Start, up: Up, limits: &Limits) -> Vec<Up
 }
 
 /// The up that walls and cameras see, where nothing was found and it lies beyond the start's reach.
-fn up_elsewhere(ruling: &Ruling, patches: &Patches, start: &Start, options: &AlignOptions) -> Option<UpCandidate> {
+fn up_elsewhere(ruling: &Decision, patches: &Patches, start: &Start, options: &AlignOptions) -> Option<UpCandidate> {
     let failed = ruling.verdict == Verdict::Failed && options.up == Up::Auto;
     failed.then(|| up_beyond_start(patches, &up_of(start), &options.limits)).flatten()
 }

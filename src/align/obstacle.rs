@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::city::CityModel;
-use crate::correspondence::{Prior, Votes};
+use crate::correspondence::{LevelCloud, Prior};
 use crate::geometry::{Point3, Start, Vector3};
 use crate::limits::Limits;
 use crate::planes::{Patches, PreparedCity, Upright};
@@ -68,16 +68,16 @@ fn far_off(
 ) -> Option<Obstacle> {
     let up = start.city_from_sfm().rotation.inverse() * Vector3::z();
     let upright = Upright { up, sigma_rad: start.sigmas().tilt_rad, known: false };
-    let votes = Votes::new(patches, start.city_from_sfm(), &upright, limits);
-    let place = votes.center_in_city;
+    let level_cloud = LevelCloud::new(patches, start.city_from_sfm(), &upright, limits);
+    let place = level_cloud.center_in_city;
     let scale = start.city_from_sfm().scale;
-    let grown_m = votes.radius_m * (limits.reach_sigmas * start.sigmas().log_scale).exp();
-    if !(grown_m >= limits.model_unit_m && votes.radius_m <= LARGEST_RADIUS_M) {
-        return Some(Obstacle::OddSize { radius_m: votes.radius_m, scale });
+    let grown_m = level_cloud.radius_m * (limits.reach_sigmas * start.sigmas().log_scale).exp();
+    if !(grown_m >= limits.model_unit_m && level_cloud.radius_m <= LARGEST_RADIUS_M) {
+        return Some(Obstacle::OddSize { radius_m: level_cloud.radius_m, scale });
     }
     // The sigmas as they were given: bounded by the city they always reach it.
-    let prior = Prior::new(start, place, votes.radius_m, Motion::Similarity, false, None, limits);
-    let reach = prior.reach(&votes.extent());
+    let prior = Prior::new(start, place, level_cloud.radius_m, Motion::Similarity, false, None, limits);
+    let reach = prior.reach(&level_cloud.extent());
     let apart = |k: usize| (low[k] - reach.high[k]).max(reach.low[k] - high[k]).max(0.0);
     if (0..3).all(|k| apart(k) == 0.0) {
         return None;

@@ -3,11 +3,11 @@
 use super::evidence::Gathered;
 use super::obstacle::Obstacle;
 use super::{AlignOptions, Outcome};
-use crate::correspondence::{NO_SOLVER, ProbeOnPlane};
+use crate::correspondence::{NO_SOLVER, PointPlaneMatch};
 use crate::geometry::Point3;
 use crate::planes::{Patches, PreparedCity, UpCandidate};
-use crate::uncertainty::Findings;
-use crate::verdict::{Alignment, Certainty, ModelErrors, PlaneEvidence, SearchSummary, Support, Verdict, freedoms};
+use crate::uncertainty::SystematicErrors;
+use crate::verdict::{Alignment, Certainty, ModelErrors, PlaneSupport, SearchSummary, Support, Verdict, freedoms};
 
 /// The alignment that an outcome makes.
 pub(super) fn tell(
@@ -18,7 +18,7 @@ pub(super) fn tell(
     options: &AlignOptions,
 ) -> Alignment {
     let Outcome { ruling, found, hypotheses } = outcome;
-    let Gathered { evidence, rows, firm, findings } = found;
+    let Gathered { evidence, rows, patch_points, findings } = found;
     let (rivals, hold) = (&evidence.rivals, &evidence.hold);
     Alignment {
         verdict: ruling.verdict,
@@ -33,14 +33,14 @@ pub(super) fn tell(
         model_errors: model_errors(&findings),
         freedoms: if rivals.is_empty() { Vec::new() } else { freedoms(hold, &options.limits.verdict) },
         covariance: hold.covariance(),
-        support: support(&rows, firm),
+        support: support(&rows, patch_points),
         evidence: evidence_of_planes(&rows, city),
         search: SearchSummary { solver: hypotheses.solver, samples: hypotheses.samples as u64, seed: options.seed },
         warnings: warnings(patches).into_iter().chain(findings.worth_telling(&options.limits.uncertainty)).collect(),
     }
 }
 
-fn model_errors(findings: &Findings) -> ModelErrors {
+fn model_errors(findings: &SystematicErrors) -> ModelErrors {
     ModelErrors {
         walls_inset: [findings.walls_inset_m, findings.walls_inset_sigma_m],
         tops_lower: [findings.tops_lower_m, findings.tops_lower_sigma_m],
@@ -66,7 +66,7 @@ pub(super) fn refused(
         origin: city.model.origin,
         center: Point3::from(city.model.origin),
         radius: 0.0,
-        accuracy_m: options.accuracy_m.unwrap_or(options.limits.verdict.determined_m),
+        accuracy_m: options.accuracy_m.unwrap_or(options.limits.verdict.default_accuracy_m),
         model_errors: ModelErrors::default(),
         freedoms: Vec::new(),
         covariance: [[0.0; 7]; 7],
@@ -84,11 +84,11 @@ fn words_of_up(up: UpCandidate) -> String {
     )
 }
 
-fn support(rows: &[ProbeOnPlane], firm: usize) -> Support {
+fn support(rows: &[PointPlaneMatch], patch_points: usize) -> Support {
     let mut across: Vec<f64> = rows.iter().map(|r| r.hit.across_m.abs()).collect();
     across.sort_by(f64::total_cmp);
     Support {
-        points: firm,
+        points: patch_points,
         trusted_points: rows.len(),
         planes: rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).count(),
         rms_m: rms(&across),
@@ -97,15 +97,15 @@ fn support(rows: &[ProbeOnPlane], firm: usize) -> Support {
 }
 
 /// The planes by falling number of points.
-fn evidence_of_planes(rows: &[ProbeOnPlane], city: &PreparedCity) -> Vec<PlaneEvidence> {
-    let of_plane = |rows: &[ProbeOnPlane]| {
+fn evidence_of_planes(rows: &[PointPlaneMatch], city: &PreparedCity) -> Vec<PlaneSupport> {
+    let of_plane = |rows: &[PointPlaneMatch]| {
         let plane = rows[0].hit.plane;
         let across: Vec<f64> = rows.iter().map(|r| r.hit.across_m).collect();
         let object = city.planes().planes[plane.0 as usize].object;
         let object = city.model.object_name(object).to_owned();
-        PlaneEvidence { plane: plane.0, object, points: rows.len(), rms_m: rms(&across) }
+        PlaneSupport { plane: plane.0, object, points: rows.len(), rms_m: rms(&across) }
     };
-    let mut evidence: Vec<PlaneEvidence> = rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(of_plane).collect();
+    let mut evidence: Vec<PlaneSupport> = rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(of_plane).collect();
     evidence.sort_by(|a, b| b.points.cmp(&a.points).then(a.plane.cmp(&b.plane)));
     evidence
 }

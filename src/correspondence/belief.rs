@@ -21,7 +21,7 @@ pub(super) struct RowErrors {
     /// What an uncertain rotation adds, per metre of distance from the middle of the cloud.
     sigma_per_m: f64,
     /// What is known to within this is known.
-    learned_m: f64,
+    informative_sigma_m: f64,
     /// Of the cloud.
     radius_m: f64,
     /// How far a belief is believed.
@@ -33,7 +33,7 @@ const SMALLEST_ACROSS: f64 = 1e-3;
 
 /// Where a patch is expected under a belief.
 pub(super) struct Expectation<'a> {
-    belief: &'a Belief,
+    belief: &'a ScaleTranslationEstimate,
     /// Of the patch's centre from the middle of the cloud, city directions.
     arm: Vector3<f64>,
     row_variance: f64,
@@ -66,7 +66,7 @@ impl RowErrors {
         RowErrors {
             sigma_m: limits.row_sigma_m,
             sigma_per_m: limits.row_sigma_per_m,
-            learned_m: limits.learned_m,
+            informative_sigma_m: limits.informative_sigma_m,
             radius_m,
             reach_sigmas,
         }
@@ -75,7 +75,7 @@ impl RowErrors {
 
 /// What is known of scale and translation, given the rotation.
 #[derive(Clone, Copy)]
-pub(super) struct Belief {
+pub(super) struct ScaleTranslationEstimate {
     /// Level frame to city directions.
     rotation: Matrix3<f64>,
     /// Whether it may be off about level axes too, and not only about up.
@@ -87,21 +87,28 @@ pub(super) struct Belief {
     errors: RowErrors,
 }
 
-impl Belief {
+impl ScaleTranslationEstimate {
     /// What the prior says, given the rotation.
-    pub fn new(prior: &Prior, rotation: Matrix3<f64>, errors: RowErrors) -> Belief {
+    pub fn new(prior: &Prior, rotation: Matrix3<f64>, errors: RowErrors) -> ScaleTranslationEstimate {
         let (mean, covariance) = prior.scale_and_place();
-        Belief { rotation, leans: !prior.up_is_known, spin: Vector3::zeros(), mean, covariance, errors }
+        ScaleTranslationEstimate {
+            rotation,
+            leans: !prior.up_is_known,
+            spin: Vector3::zeros(),
+            mean,
+            covariance,
+            errors,
+        }
     }
 
     /// The same of scale and place under another rotation.
-    pub fn turned(&self, rotation: Matrix3<f64>) -> Belief {
-        Belief { rotation, ..*self }
+    pub fn turned(&self, rotation: Matrix3<f64>) -> ScaleTranslationEstimate {
+        ScaleTranslationEstimate { rotation, ..*self }
     }
 
     /// The same with a turn that is wholly open: its axis, with one sigma for length, radians.
-    pub fn spinning(&self, spin: Vector3<f64>) -> Belief {
-        Belief { spin, ..*self }
+    pub fn spinning(&self, spin: Vector3<f64>) -> ScaleTranslationEstimate {
+        ScaleTranslationEstimate { spin, ..*self }
     }
 
     /// Level frame to city directions.
@@ -163,7 +170,7 @@ impl Belief {
             let across = v.fixed_rows::<3>(1).into_owned();
             let length = across.norm();
             let normal = across.try_normalize(SMALLEST_ACROSS)?;
-            chance *= (self.errors.learned_m / (self.errors.reach_sigmas * sigma_m)).min(1.0);
+            chance *= (self.errors.informative_sigma_m / (self.errors.reach_sigmas * sigma_m)).min(1.0);
             Some(Row { point: self.unturn(&normal) * (v[0] / length), normal, offset: -value / length })
         };
         let rows: Option<Vec<Row>> = order[..missing.min(4)].iter().map(&mut row).collect();
@@ -200,10 +207,10 @@ mod tests {
     use crate::planes::{CityPlane, PlaneId};
     use crate::robust::Motion;
 
-    fn belief(motion: Motion) -> Belief {
+    fn belief(motion: Motion) -> ScaleTranslationEstimate {
         let (start, limits) = (Start::with_default_sigmas(Similarity::identity()), Limits::default());
         let prior = Prior::new(&start, Point3::origin(), 40.0, motion, false, None, &limits);
-        Belief::new(&prior, Matrix3::identity(), RowErrors::new(&limits, 40.0))
+        ScaleTranslationEstimate::new(&prior, Matrix3::identity(), RowErrors::new(&limits, 40.0))
     }
 
     fn wall(low: f64, offset: f64) -> Target {

@@ -1,27 +1,27 @@
 //! From many hypotheses to a few distinct poses, each as good as it can be made.
 //!
-//! Method       stages with larger panels and narrower gates refine, slide and rank fewer and fewer poses. From the second stage on a
+//! Method       stages with more sample points and narrower gates refine poses, walk them along weak directions and rank fewer and fewer of them. From the second stage on a
 //!              pose also pays for every line of sight that it would block, and better poses in the basins beside join before the
 //!              last. Distinct poses stay distinct to the end: the verdict reads the distance to the runner-up.
 
 use rayon::prelude::*;
 
+use super::line_search::{basin_hopping, walk_free_directions, walk_weak_directions};
 use super::pose_search::largest_shift;
-use super::refine::{Refined, Refiner};
+use super::refine::{PoseRefiner, RefinedPose};
 use super::scene::Scene;
 use super::search::Hypotheses;
-use super::walk::{hop, settle, slide};
 use crate::geometry::Similarity;
 use crate::limits::StageLimits;
 
 /// A pose that survived to the end.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    pub refined: Refined,
-    /// Share of the vote that lies on the city.
+    pub refined: RefinedPose,
+    /// Inlier share: weight of the sample points that lie on the city.
     pub share: f64,
-    /// Share of the vote whose lines of sight the city would block.
-    pub blocked: f64,
+    /// Weight of the sample points whose lines of sight the city would block.
+    pub occluded: f64,
     /// What leaving the start costs.
     pub prior_cost: f64,
     /// Samples of the search that led here.
@@ -30,13 +30,13 @@ pub struct Candidate {
 
 impl Candidate {
     /// What speaks for the pose less what speaks against it.
-    pub fn balance(&self) -> f64 {
-        self.share - self.blocked - self.prior_cost
+    pub fn total_score(&self) -> f64 {
+        self.share - self.occluded - self.prior_cost
     }
 }
 
 /// The distinct poses that hypotheses lead to, best first.
-pub fn candidates(refiner: &Refiner, hypotheses: &Hypotheses) -> Vec<Candidate> {
+pub fn candidates(refiner: &PoseRefiner, hypotheses: &Hypotheses) -> Vec<Candidate> {
     let scene = refiner.scene;
     let unranked =
         |ranked: &crate::robust::Ranked<Similarity>| Candidate { hits: ranked.hits, ..unjudged(refiner, &ranked.pose) };
@@ -49,25 +49,25 @@ pub fn candidates(refiner: &Refiner, hypotheses: &Hypotheses) -> Vec<Candidate> 
         candidates.retain(|c| scene.prior.reaches(&c.refined.city_from_level));
         candidates = distinct(candidates, scene, stage.keep);
     }
-    candidates.iter_mut().for_each(|c| c.refined = settled(refiner, &c.refined.city_from_level));
+    candidates.iter_mut().for_each(|c| c.refined = refined_to_end(refiner, &c.refined.city_from_level));
     candidates
 }
 
 /// A pose as a candidate of the last stage, not moved.
-pub fn candidate_at(refiner: &Refiner, pose: &Similarity) -> Candidate {
+pub fn candidate_at(refiner: &PoseRefiner, pose: &Similarity) -> Candidate {
     let [.., last] = &refiner.scene.limits.refinement.stages;
     judged(refiner.scene, last, unjudged(refiner, pose))
 }
 
 /// Candidates of one view of a cloud, joined by those of another view (up taken otherwise): each of these with the map between the level
 /// frames.
-pub fn joined(refiner: &Refiner, own: Vec<Candidate>, others: &[(Similarity, Candidate)]) -> Vec<Candidate> {
+pub fn joined(refiner: &PoseRefiner, own: Vec<Candidate>, others: &[(Similarity, Candidate)]) -> Vec<Candidate> {
     let scene = refiner.scene;
     let seen_here = |(other_from_level, other): &(Similarity, Candidate)| {
         // Level frames of one start differ by a turn: the scale is the same to the bit.
         let pose = other.refined.city_from_level * *other_from_level;
         let pose = Similarity { scale: other.refined.city_from_level.scale, ..pose };
-        Candidate { refined: settled(refiner, &pose), hits: other.hits, ..candidate_at(refiner, &pose) }
+        Candidate { refined: refined_to_end(refiner, &pose), hits: other.hits, ..candidate_at(refiner, &pose) }
     };
     let all = own.into_iter().chain(others.iter().map(seen_here)).collect();
     let [.., last] = &scene.limits.refinement.stages;
@@ -75,71 +75,82 @@ pub fn joined(refiner: &Refiner, own: Vec<Candidate>, others: &[(Similarity, Can
 }
 
 /// A pose made sharp once more, with a gate as narrow as the residuals allow: what lies beyond is somebody else's facet.
-pub fn settled(refiner: &Refiner, pose: &Similarity) -> Refined {
+pub fn refined_to_end(refiner: &PoseRefiner, pose: &Similarity) -> RefinedPose {
     let scene = refiner.scene;
-    let (firm, all) = (probes(scene.votes.firm), probes(scene.votes.probes.len()));
-    let sharp = refiner.sharpen(&firm, pose, scene.unit_m);
-    settle(refiner, &all, sharp, scene.unit_m, scene.limits.walk.settling_units * scene.unit_m)
+    let (patch_points, all) =
+        (sample_points(scene.level_cloud.patch_points), sample_points(scene.level_cloud.sample_points.len()));
+    let sharp = refiner.sharpen(&patch_points, pose, scene.gate_unit_m);
+    walk_free_directions(refiner, &all, sharp, scene.gate_unit_m, scene.limits.walk.settling_units * scene.gate_unit_m)
 }
 
-fn probes(count: usize) -> Vec<u32> {
+fn sample_points(count: usize) -> Vec<u32> {
     (0..count as u32).collect()
 }
 
 /// Better poses in basins beside those of the candidates, which stay: one that is far enough off remains a rival.
-fn beside(refiner: &Refiner, candidates: &[Candidate]) -> Vec<Candidate> {
-    let panel = refiner.scene.votes.panel(refiner.scene.limits.walk.basin_probes);
-    candidates.par_iter().map(|c| unjudged(refiner, &hop(refiner, &panel, &c.refined.city_from_level))).collect()
+fn beside(refiner: &PoseRefiner, candidates: &[Candidate]) -> Vec<Candidate> {
+    let point_subset = refiner.scene.level_cloud.point_subset(refiner.scene.limits.walk.basin_points);
+    candidates
+        .par_iter()
+        .map(|c| unjudged(refiner, &basin_hopping(refiner, &point_subset, &c.refined.city_from_level)))
+        .collect()
 }
 
-fn unjudged(refiner: &Refiner, pose: &Similarity) -> Candidate {
+fn unjudged(refiner: &PoseRefiner, pose: &Similarity) -> Candidate {
     let refined = refiner.assess(&[], pose, 0.0);
-    Candidate { refined, share: 0.0, blocked: 0.0, prior_cost: 0.0, hits: 0 }
+    Candidate { refined, share: 0.0, occluded: 0.0, prior_cost: 0.0, hits: 0 }
 }
 
-fn improved(refiner: &Refiner, stage: &StageLimits, candidate: &Candidate) -> Candidate {
+fn improved(refiner: &PoseRefiner, stage: &StageLimits, candidate: &Candidate) -> Candidate {
     let scene = refiner.scene;
-    let panel = panel(scene, stage);
-    let gates_m: Vec<f64> = stage.gates_units.iter().map(|g| g * scene.unit_m).collect();
-    let first = refiner.refine(&panel, &candidate.refined.city_from_level, &gates_m);
+    let point_subset = point_subset(scene, stage);
+    let gates_m: Vec<f64> = stage.gates_units.iter().map(|g| g * scene.gate_unit_m).collect();
+    let first = refiner.refine(&point_subset, &candidate.refined.city_from_level, &gates_m);
     let spectrum = first.chart.spectrum(&first.equations.full());
-    let (voters, gate_m) = (voters(scene, stage), stage.ranking_gate_units * scene.unit_m);
-    let slid = slide(scene, &voters, &first.chart, &spectrum, &first.city_from_level, gate_m);
-    let refined = if slid == first.city_from_level { first } else { refiner.refine(&panel, &slid, &gates_m) };
+    let (voters, gate_m) = (voters(scene, stage), stage.ranking_gate_units * scene.gate_unit_m);
+    let slid = walk_weak_directions(scene, &voters, &first.chart, &spectrum, &first.city_from_level, gate_m);
+    let refined = if slid == first.city_from_level { first } else { refiner.refine(&point_subset, &slid, &gates_m) };
     judged(scene, stage, Candidate { refined, ..candidate.clone() })
 }
 
-/// What speaks for and against the pose of a candidate, by the panel of a stage.
+/// What speaks for and against the pose of a candidate, by the point subset of a stage.
 fn judged(scene: &Scene, stage: &StageLimits, candidate: Candidate) -> Candidate {
     let pose = candidate.refined.city_from_level;
-    let blocked = if stage.sight { blocked_share(scene, &pose) } else { 0.0 };
-    let share = scene.panel_share(&voters(scene, stage), &pose, stage.ranking_gate_units * scene.unit_m);
-    Candidate { share, blocked, prior_cost: scene.prior.cost(&pose), ..candidate }
+    let occluded = if stage.sight { blocked_share(scene, &pose) } else { 0.0 };
+    let share = scene.inlier_share(&voters(scene, stage), &pose, stage.ranking_gate_units * scene.gate_unit_m);
+    Candidate { share, occluded, prior_cost: scene.prior.cost(&pose), ..candidate }
 }
 
-/// The probes that refine.
-fn panel(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
-    if stage.probes < scene.votes.firm { scene.votes.panel(stage.probes) } else { probes(scene.votes.firm) }
+/// The sample points that refine.
+fn point_subset(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
+    if stage.sample_points < scene.level_cloud.patch_points {
+        scene.level_cloud.point_subset(stage.sample_points)
+    } else {
+        sample_points(scene.level_cloud.patch_points)
+    }
 }
 
-/// Loose points have no vote.
+/// Points of no patch have no weight in the score.
 fn voters(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
-    scene.votes.panel(stage.probes.min(scene.votes.firm).min(scene.limits.refinement.most_voters))
+    scene.level_cloud.point_subset(
+        stage.sample_points.min(scene.level_cloud.patch_points).min(scene.limits.refinement.most_scoring_points),
+    )
 }
 
 fn blocked_share(scene: &Scene, pose: &Similarity) -> f64 {
-    let blocked = scene.blocked(&scene.votes.panel(scene.limits.refinement.sight_probes), pose);
-    blocked.iter().filter(|b| **b).count() as f64 / blocked.len().max(1) as f64
+    let occluded = scene.occluded(&scene.level_cloud.point_subset(scene.limits.refinement.traced_points), pose);
+    occluded.iter().filter(|b| **b).count() as f64 / occluded.len().max(1) as f64
 }
 
 /// The best `keep` of those that are truly different, best first.
 fn distinct(mut candidates: Vec<Candidate>, scene: &Scene, keep: usize) -> Vec<Candidate> {
-    candidates.sort_by(|a, b| b.balance().total_cmp(&a.balance()));
-    let same_m = scene.limits.refinement.same_pose_units * scene.unit_m;
+    candidates.sort_by(|a, b| b.total_score().total_cmp(&a.total_score()));
+    let same_m = scene.limits.refinement.same_pose_units * scene.gate_unit_m;
     let mut kept: Vec<Candidate> = Vec::new();
     for c in candidates {
-        let shift =
-            |k: &Candidate| largest_shift(&k.refined.city_from_level, &c.refined.city_from_level, scene.votes.radius_m);
+        let shift = |k: &Candidate| {
+            largest_shift(&k.refined.city_from_level, &c.refined.city_from_level, scene.level_cloud.radius_m)
+        };
         match kept.iter_mut().find(|k| shift(k) < same_m) {
             Some(same) => same.hits += c.hits,
             None => kept.push(c),
@@ -160,18 +171,18 @@ mod tests {
     use crate::synthetic::{Block, CloudOptions, House, Offset};
 
     fn found(scene: &Scene, seed: u64) -> Vec<Candidate> {
-        candidates(&Refiner::new(scene), &search(scene, seed, &()).unwrap())
+        candidates(&PoseRefiner::new(scene), &search(scene, seed, &()).unwrap())
     }
 
     fn apart_m(scene: &Scene, a: &Candidate, b: &Candidate) -> f64 {
-        largest_shift(&a.refined.city_from_level, &b.refined.city_from_level, scene.votes.radius_m)
+        largest_shift(&a.refined.city_from_level, &b.refined.city_from_level, scene.level_cloud.radius_m)
     }
 
     /// What holds of every list of candidates.
     fn check(scene: &Scene, candidates: &[Candidate]) {
         assert!(candidates.len() <= 6);
-        assert!(candidates.is_sorted_by(|a, b| a.balance() >= b.balance()), "the best first");
-        let same_m = scene.limits.refinement.same_pose_units * scene.unit_m;
+        assert!(candidates.is_sorted_by(|a, b| a.total_score() >= b.total_score()), "the best first");
+        let same_m = scene.limits.refinement.same_pose_units * scene.gate_unit_m;
         for (i, c) in candidates.iter().enumerate() {
             assert!(scene.prior.reaches(&c.refined.city_from_level));
             for other in &candidates[..i] {
@@ -190,8 +201,8 @@ mod tests {
         let error = made.error(&scene, &candidates[0].refined.city_from_level);
         assert!(error.level_m < 0.02 && error.up_m < 0.02, "{error:?}");
         assert!(candidates[0].share > 0.9 && candidates[0].hits > 0, "{:?}", candidates[0]);
-        let again = candidate_at(&Refiner::new(&scene), &candidates[0].refined.city_from_level);
-        assert!((again.balance() - candidates[0].balance()).abs() < 0.01);
+        let again = candidate_at(&PoseRefiner::new(&scene), &candidates[0].refined.city_from_level);
+        assert!((again.total_score() - candidates[0].total_score()).abs() < 0.01);
     }
 
     /// One box on flat ground, seen all round, its heading unknown.
@@ -221,12 +232,12 @@ mod tests {
             for off in [Offset::default(), half_turn] {
                 let expected = made.pose(&scene, &off);
                 let shift_m =
-                    |c: &Candidate| largest_shift(&c.refined.city_from_level, &expected, scene.votes.radius_m);
+                    |c: &Candidate| largest_shift(&c.refined.city_from_level, &expected, scene.level_cloud.radius_m);
                 let nearest_m = candidates.iter().map(shift_m).fold(f64::INFINITY, f64::min);
                 assert!(nearest_m < 0.05, "{motion:?} {heading_rad} {off:?}: {nearest_m}");
             }
             // Nothing but the start tells the two apart.
-            assert!(candidates[1].balance() > 0.97 * candidates[0].balance());
+            assert!(candidates[1].total_score() > 0.97 * candidates[0].total_score());
         }
     }
 
@@ -261,9 +272,9 @@ mod tests {
             let [own, other] = [upright, leaning].map(|u| made.scene_with(&start, any_heading, motion, &u));
             let [of_own, of_other] = [&own, &other].map(|scene| found(scene, 1));
             assert!(of_own.len() > 1 && of_other.len() > 1);
-            let other_from_own = other.votes.level_from_sfm * own.votes.level_from_sfm.inverse();
+            let other_from_own = other.level_cloud.level_from_sfm * own.level_cloud.level_from_sfm.inverse();
             let others: Vec<_> = of_other.into_iter().map(|c| (other_from_own, c)).collect();
-            let joined = joined(&Refiner::new(&own), of_own.clone(), &others);
+            let joined = joined(&PoseRefiner::new(&own), of_own.clone(), &others);
             check(&own, &joined);
             assert!(joined.len() >= of_own.len(), "{} {}", joined.len(), of_own.len());
             let error = made.error(&own, &joined[0].refined.city_from_level);
@@ -279,7 +290,7 @@ mod tests {
         let made = Made::four_houses();
         let scene = made.scene(&Offset::default(), Motion::Similarity);
         let none = Hypotheses { ranked: Vec::new(), solver: String::new(), samples: 0 };
-        assert!(candidates(&Refiner::new(&scene), &none).is_empty());
-        assert!(joined(&Refiner::new(&scene), Vec::new(), &[]).is_empty());
+        assert!(candidates(&PoseRefiner::new(&scene), &none).is_empty());
+        assert!(joined(&PoseRefiner::new(&scene), Vec::new(), &[]).is_empty());
     }
 }

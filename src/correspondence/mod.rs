@@ -4,8 +4,8 @@
 mod belief;
 mod candidates;
 mod cliques;
-mod contenders;
-mod economy;
+mod null_poses;
+mod solver_choice;
 mod pose_search;
 mod prior;
 mod refine;
@@ -13,20 +13,20 @@ mod sampler;
 mod scene;
 mod scoring;
 mod search;
-mod sight;
+mod occlusion;
 mod targets;
 #[cfg(test)]
 pub(crate) mod test_scene;
-mod votes;
-mod walk;
+mod level_cloud;
+mod line_search;
 
-pub use candidates::{Candidate, candidate_at, candidates, joined, settled};
+pub use candidates::{Candidate, candidate_at, candidates, joined, refined_to_end};
 pub use cliques::Graph;
-pub use contenders::{Place, contenders};
+pub use level_cloud::{LevelCloud, LevelPatch};
+pub use null_poses::{Basin, null_poses};
 pub use pose_search::PoseSearch;
 pub use prior::Prior;
-pub use refine::{ProbeOnPlane, Refined, Refiner};
+pub use refine::{PointPlaneMatch, PoseRefiner, RefinedPose};
 pub use sampler::Sampler;
 pub use scene::Scene;
 pub use search::{Hypotheses, NO_SOLVER, search};
-pub use votes::{LevelPatch, Votes};

@@ -1,8 +1,8 @@
 //! Poses of minimal samples as the robust loop sees them: drawn, solved, and scored on facets.
 
-use super::sampler::{Pair, Sample, Sampler};
+use super::level_cloud::LevelPatch;
+use super::sampler::{MinimalSample, PatchPlanePair, Sampler};
 use super::scene::Scene;
-use super::votes::LevelPatch;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::robust::{Problem, Random};
 use crate::solvers::{Configuration, Row, Sought, solve_minimal};
@@ -14,8 +14,8 @@ pub struct PoseSearch<'a> {
     pub sought: Sought,
     /// How many points the samples take from each pair, the first pair's first.
     pub configuration: &'a Configuration,
-    /// Probes that rank hypotheses.
-    pub panel: &'a [u32],
+    /// Sample points that rank hypotheses.
+    pub point_subset: &'a [u32],
 }
 
 impl Problem for PoseSearch<'_> {
@@ -26,22 +26,22 @@ impl Problem for PoseSearch<'_> {
     }
 
     fn score(&self, pose: &Similarity) -> f64 {
-        self.scene.score(self.panel, pose, self.gate_m())
+        self.scene.score(self.point_subset, pose, self.gate_m())
     }
 
     fn score_from(&self, pose: &Similarity, least: f64) -> Option<f64> {
-        self.scene.score_from(self.panel, pose, self.gate_m(), least)
+        self.scene.score_from(self.point_subset, pose, self.gate_m(), least)
     }
 
     fn same(&self, a: &Similarity, b: &Similarity) -> bool {
-        largest_shift(a, b, self.scene.votes.radius_m) < self.scene.limits.search.same_place_m
+        largest_shift(a, b, self.scene.level_cloud.radius_m) < self.scene.limits.search.same_place_m
     }
 }
 
 impl PoseSearch<'_> {
     /// Wide: a minimal sample extrapolates the noise of a few patches over the whole scene.
     fn gate_m(&self) -> f64 {
-        self.scene.limits.search.gate_units * self.scene.unit_m
+        self.scene.limits.search.gate_units * self.scene.gate_unit_m
     }
 
     /// Draws one sample and appends its poses within the start's reach. Tells the chance that the sample is right; `None` where
@@ -57,13 +57,13 @@ impl PoseSearch<'_> {
     }
 
     /// So many points of each pair on its plane; then what completes the sample, one row for each plane that is left.
-    fn rows(&self, sample: &Sample) -> Option<Vec<Row>> {
+    fn rows(&self, sample: &MinimalSample) -> Option<Vec<Row>> {
         let mut rows = Vec::with_capacity(self.sought.unknowns());
         let mut completion = sample.completion.iter();
         for (k, &points) in self.configuration.points_per_plane.iter().enumerate() {
             match sample.pairs.get(k) {
                 Some(pair) => {
-                    let patch = &self.scene.votes.patches[pair.patch as usize];
+                    let patch = &self.scene.level_cloud.patches[pair.patch as usize];
                     let places = places(patch, points, &self.across(sample, k));
                     rows.extend(places[..points].iter().map(|place| row(place, pair)));
                 }
@@ -76,7 +76,7 @@ impl PoseSearch<'_> {
 
     /// What two points of the pair's patch must stand across, to tell most: the direction that is known already. Known up holds
     /// its vertical; else a patch is turned about the normal of the pair before it.
-    fn across(&self, sample: &Sample, k: usize) -> Vector3<f64> {
+    fn across(&self, sample: &MinimalSample, k: usize) -> Vector3<f64> {
         if self.sampler.up_is_known() {
             return Vector3::z();
         }
@@ -85,14 +85,14 @@ impl PoseSearch<'_> {
     }
 
     /// Three points of a patch lie as well on their plane when the patch is turned over.
-    fn faces_its_planes(&self, sample: &Sample, pose: &Similarity) -> bool {
+    fn faces_its_planes(&self, sample: &MinimalSample, pose: &Similarity) -> bool {
         let wholes = self.configuration.points_per_plane.iter().take_while(|points| **points == 3).count();
         let mut pairs = sample.pairs.iter().take(wholes);
         pairs.all(|pair| (pose.rotation * pair.normal).dot(&pair.target.normal) > 0.0)
     }
 }
 
-fn row(place: &Vector3<f64>, pair: &Pair) -> Row {
+fn row(place: &Vector3<f64>, pair: &PatchPlanePair) -> Row {
     Row { point: *place, normal: pair.target.normal, offset: pair.target.offset }
 }
 

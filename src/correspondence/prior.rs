@@ -90,7 +90,7 @@ impl Prior {
             && self.offsets(city_from_level).iter().all(|o| o.abs() <= self.reach_sigmas)
     }
 
-    /// What leaving the expected pose costs, shares of the vote.
+    /// What leaving the expected pose costs, in the unit of the score.
     pub fn cost(&self, city_from_level: &Similarity) -> f64 {
         self.cost_of_sigma_sq * self.offsets(city_from_level).iter().map(|o| o * o).sum::<f64>()
     }

@@ -1,12 +1,12 @@
 //! From a rough pose to a sharp one: closest facets with their extents, bounded loss, a gate that narrows.
 //!
 //! Question     the pose near a given one that lies best on the facets
-//! Input        votes, field, a pose, a schedule of gates
-//! Output       the pose, its information, which probe lies on which facet
-//! Method       iterated closest facets: each probe takes the nearest facet of its side and direction within the gate; the distance
+//! Input        level cloud, facet grid, a pose, a schedule of gates
+//! Output       the pose, its information, which sample point lies on which facet
+//! Method       iterated closest facets: each sample point takes the nearest facet of its side and direction within the gate; the distance
 //!              from the facet's plane is minimised with Tukey's weights by Gauss-Newton steps that leave alone what the data
 //!              do not hold. All points of one plane of the city share the model's error, so n of them with noise sigma weigh
-//!              as n / (sigma^2 + n tau^2): one plane is one vote of limited weight.
+//!              as n / (sigma^2 + n tau^2): one plane is one observation of limited weight.
 //! Fails when   the pose is farther off than the gate: then it stays near where it was and scores badly
 
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ use crate::robust::{Chart, Motion, NormalEquations, tukey_weight};
 
 /// A refined pose and what holds it.
 #[derive(Clone, Debug)]
-pub struct Refined {
+pub struct RefinedPose {
     pub city_from_level: Similarity,
     pub chart: Chart,
     /// In units of 1 / m^2, with the error model applied.
@@ -26,7 +26,7 @@ pub struct Refined {
 }
 
 /// Refines poses of one scene.
-pub struct Refiner<'a> {
+pub struct PoseRefiner<'a> {
     pub scene: &'a Scene<'a>,
     /// How poses may move.
     pub motion: Motion,
@@ -34,7 +34,7 @@ pub struct Refiner<'a> {
     pub point_sigma_m: f64,
 }
 
-/// Probes per task.
+/// Sample points per task.
 const CHUNK: usize = 512;
 /// Pairs settle within some steps.
 const SHARPENING_STEPS: usize = 5;
@@ -43,11 +43,11 @@ const SMALLEST_RADIUS_M: f64 = 1e-3;
 /// Makes a standard deviation of a median magnitude.
 const SIGMA_OF_MEDIAN: f64 = 1.4826;
 
-/// A probe on a facet.
+/// A sample point on a facet.
 #[derive(Clone, Copy, Debug)]
-pub struct ProbeOnPlane {
-    /// Index into the votes' probes.
-    pub probe: u32,
+pub struct PointPlaneMatch {
+    /// Index into the level cloud's sample points.
+    pub sample_point: u32,
     /// In the city's local frame.
     pub place: Point3<f64>,
     pub hit: Hit,
@@ -55,81 +55,81 @@ pub struct ProbeOnPlane {
     pub weight: f64,
 }
 
-impl<'a> Refiner<'a> {
+impl<'a> PoseRefiner<'a> {
     /// Moves poses as the scene's prior allows.
-    pub fn new(scene: &'a Scene<'a>) -> Refiner<'a> {
-        let point_sigma_m = scene.votes.noise_m.max(scene.limits.least_point_sigma_m);
-        Refiner { scene, motion: scene.prior.motion, point_sigma_m }
+    pub fn new(scene: &'a Scene<'a>) -> PoseRefiner<'a> {
+        let point_sigma_m = scene.level_cloud.noise_m.max(scene.limits.least_point_sigma_m);
+        PoseRefiner { scene, motion: scene.prior.motion, point_sigma_m }
     }
 
     /// The same with the scale free, though it may be given.
-    pub fn with_free_scale(&self) -> Refiner<'a> {
-        Refiner { motion: Motion::Similarity, ..*self }
+    pub fn with_free_scale(&self) -> PoseRefiner<'a> {
+        PoseRefiner { motion: Motion::Similarity, ..*self }
     }
 
-    /// Refines `pose` with the given gates (metres of the start), one step each, using the probes of `panel`.
-    pub fn refine(&self, panel: &[u32], pose: &Similarity, gates_m: &[f64]) -> Refined {
+    /// Refines `pose` with the given gates (metres of the start), one step each, using the sample points of `point_subset`.
+    pub fn refine(&self, point_subset: &[u32], pose: &Similarity, gates_m: &[f64]) -> RefinedPose {
         let mut pose = *pose;
         let mut refined =
-            Refined { city_from_level: pose, chart: self.chart(&pose), equations: NormalEquations::default() };
+            RefinedPose { city_from_level: pose, chart: self.chart(&pose), equations: NormalEquations::default() };
         for &gate_m in gates_m {
             let chart = self.chart(&pose);
-            let rows = self.probes_on_planes(panel, &pose, gate_m);
+            let rows = self.point_plane_matches(point_subset, &pose, gate_m);
             let equations = self.equations(&chart, &rows);
-            pose = chart.moved(&pose, &chart.step(&equations, self.scene.limits.refinement.held_m));
-            refined = Refined { city_from_level: pose, chart, equations };
+            pose = chart.moved(&pose, &chart.step(&equations, self.scene.limits.refinement.most_sigma_m));
+            refined = RefinedPose { city_from_level: pose, chart, equations };
         }
         refined
     }
 
     /// Refines `pose` with a gate that follows the residuals: Tukey's width for their robust sigma, at most `gate_m` (metres of
     /// the start).
-    pub fn sharpen(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Refined {
+    pub fn sharpen(&self, point_subset: &[u32], pose: &Similarity, gate_m: f64) -> RefinedPose {
         let limits = &self.scene.limits.refinement;
-        let mut refined = self.refine(panel, pose, &[gate_m]);
+        let mut refined = self.refine(point_subset, pose, &[gate_m]);
         for _ in 0..SHARPENING_STEPS {
             let pose = refined.city_from_level;
-            let rows = self.probes_on_planes(panel, &pose, gate_m);
+            let rows = self.point_plane_matches(point_subset, &pose, gate_m);
             let narrow_m = (limits.tukey_sigmas * robust_sigma(&rows) / pose.scale)
                 .clamp(limits.least_gate_share * gate_m, gate_m);
-            refined = self.refine(panel, &pose, &[narrow_m]);
+            refined = self.refine(point_subset, &pose, &[narrow_m]);
         }
         refined
     }
 
     /// The same pose with its information, nothing moved.
-    pub fn assess(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Refined {
+    pub fn assess(&self, point_subset: &[u32], pose: &Similarity, gate_m: f64) -> RefinedPose {
         let chart = self.chart(pose);
-        let equations = self.equations(&chart, &self.probes_on_planes(panel, pose, gate_m));
-        Refined { city_from_level: *pose, chart, equations }
+        let equations = self.equations(&chart, &self.point_plane_matches(point_subset, pose, gate_m));
+        RefinedPose { city_from_level: *pose, chart, equations }
     }
 
-    /// Which probe of `panel` lies on which plane within `gate_m` (metres of the start), sorted by plane.
-    pub fn probes_on_planes(&self, panel: &[u32], pose: &Similarity, gate_m: f64) -> Vec<ProbeOnPlane> {
-        let chunk = |panel: &[u32]| self.chunk_on_planes(panel, pose, gate_m * pose.scale);
-        let mut rows = panel.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat();
+    /// Which sample point of `point_subset` lies on which plane within `gate_m` (metres of the start), sorted by plane.
+    pub fn point_plane_matches(&self, point_subset: &[u32], pose: &Similarity, gate_m: f64) -> Vec<PointPlaneMatch> {
+        let chunk = |point_subset: &[u32]| self.chunk_on_planes(point_subset, pose, gate_m * pose.scale);
+        let mut rows = point_subset.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat();
         rows.sort_by_cached_key(|r| r.hit.plane);
         rows
     }
 
-    fn chunk_on_planes(&self, panel: &[u32], pose: &Similarity, firm_gate_m: f64) -> Vec<ProbeOnPlane> {
-        let (votes, limits) = (&self.scene.votes, &self.scene.limits.refinement);
-        let loose_gate_m = firm_gate_m.min(limits.loose_gate_sigmas * self.point_sigma_m);
-        let is_firm = |i: u32| (i as usize) < votes.firm;
+    fn chunk_on_planes(&self, point_subset: &[u32], pose: &Similarity, firm_gate_m: f64) -> Vec<PointPlaneMatch> {
+        let (level_cloud, limits) = (&self.scene.level_cloud, &self.scene.limits.refinement);
+        let loose_gate_m = firm_gate_m.min(limits.unsegmented_gate_sigmas * self.point_sigma_m);
+        let is_firm = |i: u32| (i as usize) < level_cloud.patch_points;
         let gate_m = |i: u32| if is_firm(i) { firm_gate_m } else { loose_gate_m };
         let mut rows = Vec::new();
-        self.scene.meet(panel, pose, firm_gate_m, gate_m, |k, probe, hit| {
-            let i = panel[k];
-            let trust = if is_firm(i) { 1.0 } else { limits.loose_weight };
+        self.scene.meet(point_subset, pose, firm_gate_m, gate_m, |k, sample_point, hit| {
+            let i = point_subset[k];
+            let trust = if is_firm(i) { 1.0 } else { limits.unsegmented_weight };
             let weight = trust * tukey_weight(hit.across_m * hit.across_m, gate_m(i));
             if hit.outside_m <= limits.outside_share * gate_m(i) && weight > 0.0 {
-                rows.push(ProbeOnPlane { probe: i, place: probe.position, hit: *hit, weight });
+                rows.push(PointPlaneMatch { sample_point: i, place: sample_point.position, hit: *hit, weight });
             }
         });
         rows
     }
 
-    fn equations(&self, chart: &Chart, rows: &[ProbeOnPlane]) -> NormalEquations {
+    fn equations(&self, chart: &Chart, rows: &[PointPlaneMatch]) -> NormalEquations {
         let mut sums = NormalEquations::default();
         for of_plane in rows.chunk_by(|a, b| a.hit.plane == b.hit.plane) {
             sums.merge(&self.equations_of_plane(chart, of_plane), 1.0);
@@ -137,8 +137,8 @@ impl<'a> Refiner<'a> {
         sums
     }
 
-    /// What the probes on one plane say, with the model's error common to all of them.
-    pub fn equations_of_plane(&self, chart: &Chart, rows: &[ProbeOnPlane]) -> NormalEquations {
+    /// What the sample points on one plane say, with the model's error common to all of them.
+    pub fn equations_of_plane(&self, chart: &Chart, rows: &[PointPlaneMatch]) -> NormalEquations {
         let mut plane = NormalEquations::default();
         let mut count = 0.0;
         for row in rows {
@@ -154,13 +154,13 @@ impl<'a> Refiner<'a> {
     }
 
     fn chart(&self, pose: &Similarity) -> Chart {
-        let radius = (self.scene.votes.radius_m * pose.scale).max(SMALLEST_RADIUS_M);
+        let radius = (self.scene.level_cloud.radius_m * pose.scale).max(SMALLEST_RADIUS_M);
         Chart { center: pose.apply(&Point3::origin()), radius, motion: self.motion }
     }
 }
 
 /// Standard deviation of the residuals, from their median magnitude; metres.
-fn robust_sigma(rows: &[ProbeOnPlane]) -> f64 {
+fn robust_sigma(rows: &[PointPlaneMatch]) -> f64 {
     let mut across: Vec<f64> = rows.iter().map(|r| r.hit.across_m.abs()).collect();
     across.sort_by(f64::total_cmp);
     SIGMA_OF_MEDIAN * across.get(across.len() / 2).copied().unwrap_or(0.0)
@@ -169,24 +169,24 @@ fn robust_sigma(rows: &[ProbeOnPlane]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::correspondence::test_scene::{Made, all, firm, walls_alone, with_points};
-    use crate::correspondence::walk::{planes_with_points, settle};
+    use crate::correspondence::line_search::{planes_with_points, walk_free_directions};
+    use crate::correspondence::test_scene::{Made, all, patch_points, walls_alone, with_points};
     use crate::geometry::Vector3;
     use crate::synthetic::{Block, CloudOptions, House, Offset};
 
-    /// From the width of a search's ranking to that of a vote, units.
+    /// From the width of a search's ranking to that of the score, units.
     const GATES: [f64; 10] = [5.0, 5.0, 4.0, 3.3, 2.7, 2.3, 2.0, 1.7, 1.3, 1.0];
 
-    fn refined(refiner: &Refiner, pose: &Similarity) -> Refined {
+    fn refined(refiner: &PoseRefiner, pose: &Similarity) -> RefinedPose {
         let scene = refiner.scene;
-        refiner.refine(&firm(scene), pose, &GATES.map(|gate| gate * scene.unit_m))
+        refiner.refine(&patch_points(scene), pose, &GATES.map(|gate| gate * scene.gate_unit_m))
     }
 
     #[test]
     fn converges_to_the_truth_from_offsets_within_the_gates_and_finds_the_scale() {
         let made = Made::four_houses();
         let scene = made.scene(&Offset::default(), Motion::Similarity);
-        let refiner = Refiner::new(&scene);
+        let refiner = PoseRefiner::new(&scene);
         for (shift_m, heading_deg, tilt_deg, scale) in [
             ([0.6, -0.5, 0.4], 0.0, [0.0, 0.0], 1.0f64),
             ([-0.5, 0.5, -0.5], 1.5, [0.0, 0.0], 1.0),
@@ -211,13 +211,13 @@ mod tests {
             // The given scale is wrong by some per cent, so that a free one would leave it.
             let start = Offset { shift_m, heading_rad: 0.02, scale: 0.97 + 0.03 * k as f64, ..Offset::default() };
             let scene = made.scene(&start, Motion::Rigid);
-            let refiner = Refiner::new(&scene);
+            let refiner = PoseRefiner::new(&scene);
             let first = refined(&refiner, &scene.prior.expected());
-            let sharp = refiner.sharpen(&firm(&scene), &first.city_from_level, scene.unit_m);
-            let settled = settle(&refiner, &all(&scene), sharp.clone(), scene.unit_m, 1.0);
-            for pose in [&first, &sharp, &settled].map(|refined| refined.city_from_level) {
+            let sharp = refiner.sharpen(&patch_points(&scene), &first.city_from_level, scene.gate_unit_m);
+            let refined_to_end = walk_free_directions(&refiner, &all(&scene), sharp.clone(), scene.gate_unit_m, 1.0);
+            for pose in [&first, &sharp, &refined_to_end].map(|refined| refined.city_from_level) {
                 assert_eq!(pose.scale.to_bits(), 1f64.to_bits(), "{pose:?}");
-                let given = scene.votes.level_from_sfm.scale;
+                let given = scene.level_cloud.level_from_sfm.scale;
                 assert_eq!(scene.city_from_sfm(&pose).scale.to_bits(), given.to_bits());
             }
             let free = refined(&refiner.with_free_scale(), &scene.prior.expected()).city_from_level;
@@ -232,7 +232,7 @@ mod tests {
         for motion in [Motion::Rigid, Motion::Similarity] {
             let scene = made.scene(&Offset::default(), motion);
             let off = Offset { shift_m: [0.4, -0.3, 0.35], heading_rad: 0.01, ..Offset::default() };
-            let refined = refined(&Refiner::new(&scene), &made.pose(&scene, &off));
+            let refined = refined(&PoseRefiner::new(&scene), &made.pose(&scene, &off));
             let level_m = made.error(&scene, &refined.city_from_level).level_m;
             assert!(level_m < 0.02, "{level_m}");
             // A tilt and a scale that are good to some 1e-4 move the middle, up to 20 m from the cloud's, by millimetres.
@@ -259,7 +259,7 @@ mod tests {
             let mut scene = made.scene(&Offset::default(), Motion::Rigid);
             let limits = crate::limits::Limits { plane_sigma_m, ..made.limits };
             scene.limits = &limits;
-            made.error(&scene, &refined(&Refiner::new(&scene), &made.truth(&scene)).city_from_level).level_m
+            made.error(&scene, &refined(&PoseRefiner::new(&scene), &made.truth(&scene)).city_from_level).level_m
         };
         let with_error_model = pulled_m(made.limits.plane_sigma_m);
         assert!(with_error_model < 0.03, "{with_error_model}");
@@ -273,8 +273,8 @@ mod tests {
         let noisy = CloudOptions { noise_m: 0.1, points_per_roof: 100, outlier_share: 0.0, ..CloudOptions::default() };
         let made = Made::cloud(Block::four_houses().with_ground(true), &noisy);
         let scene = made.scene(&Offset::default(), Motion::Similarity);
-        let refiner = Refiner::new(&scene);
-        let rows = refiner.probes_on_planes(&firm(&scene), &made.truth(&scene), scene.unit_m);
+        let refiner = PoseRefiner::new(&scene);
+        let rows = refiner.point_plane_matches(&patch_points(&scene), &made.truth(&scene), scene.gate_unit_m);
         let chart = refiner.assess(&[], &made.truth(&scene), 0.0).chart;
         let equations = refiner.equations(&chart, &rows);
         let gradient: f64 = equations.gradient[6];
@@ -283,7 +283,7 @@ mod tests {
             .map(|plane| {
                 let count: f64 = plane.iter().map(|row| row.weight).sum();
                 let variance = refiner.point_sigma_m.powi(2) + count * scene.limits.plane_sigma_m.powi(2);
-                let arm = |row: &ProbeOnPlane| {
+                let arm = |row: &PointPlaneMatch| {
                     (row.hit.normal.dot(&(row.place - chart.center)) - row.hit.across_m) / chart.radius
                 };
                 plane.iter().map(|row| row.weight * arm(row) * row.hit.across_m).sum::<f64>() / variance
@@ -311,15 +311,19 @@ mod tests {
         let made = Made::new(block.clone(), survey);
         for motion in [Motion::Rigid, Motion::Similarity] {
             let scene = made.scene(&Offset::default(), motion);
-            assert_eq!(scene.votes.probes.len() - scene.votes.firm, 20, "all of the roofs' points are loose");
-            let refiner = Refiner::new(&scene);
+            assert_eq!(
+                scene.level_cloud.sample_points.len() - scene.level_cloud.patch_points,
+                20,
+                "all of the roofs' points are loose"
+            );
+            let refiner = PoseRefiner::new(&scene);
             for rise_m in [-0.7, 0.31, 0.9] {
                 let off = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, rise_m], ..Offset::default() });
-                let sharp = refiner.sharpen(&firm(&scene), &off, scene.unit_m);
+                let sharp = refiner.sharpen(&patch_points(&scene), &off, scene.gate_unit_m);
                 let left_m = made.rise_m(&scene, &sharp.city_from_level);
                 assert!((left_m - rise_m).abs() < 0.02, "walls hold no height: {left_m}");
-                let settled = settle(&refiner, &all(&scene), sharp, scene.unit_m, 1.2);
-                let error = made.error(&scene, &settled.city_from_level);
+                let refined_to_end = walk_free_directions(&refiner, &all(&scene), sharp, scene.gate_unit_m, 1.2);
+                let error = made.error(&scene, &refined_to_end.city_from_level);
                 assert!(error.up_m < 0.02 && error.level_m < 0.02, "{error:?} from {rise_m}");
             }
         }
@@ -335,14 +339,14 @@ mod tests {
         let survey = with_points(block.cloud(&sharp), &(1..8).map(stray).collect::<Vec<_>>());
         let made = Made::new(block, survey);
         let scene = made.scene(&Offset::default(), Motion::Rigid);
-        assert_eq!(scene.votes.probes.len() - scene.votes.firm, 7, "all of them are loose");
-        let refiner = Refiner::new(&scene);
-        let sharp = refiner.sharpen(&firm(&scene), &made.truth(&scene), scene.unit_m);
+        assert_eq!(scene.level_cloud.sample_points.len() - scene.level_cloud.patch_points, 7, "all of them are loose");
+        let refiner = PoseRefiner::new(&scene);
+        let sharp = refiner.sharpen(&patch_points(&scene), &made.truth(&scene), scene.gate_unit_m);
         let on_roof = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, 0.1], ..Offset::default() });
-        let support = |pose: &Similarity| planes_with_points(&refiner, &all(&scene), pose, scene.unit_m);
+        let support = |pose: &Similarity| planes_with_points(&refiner, &all(&scene), pose, scene.gate_unit_m);
         assert!(support(&on_roof) > support(&sharp.city_from_level), "they tempt");
-        let settled = settle(&refiner, &all(&scene), sharp, scene.unit_m, 1.2);
-        let rise_m = made.rise_m(&scene, &settled.city_from_level);
+        let refined_to_end = walk_free_directions(&refiner, &all(&scene), sharp, scene.gate_unit_m, 1.2);
+        let rise_m = made.rise_m(&scene, &refined_to_end.city_from_level);
         // Far from the 10 cm that tempt.
         assert!(rise_m.abs() < 0.05, "{rise_m}");
     }
@@ -354,11 +358,11 @@ mod tests {
         let made =
             Made::new(block.clone(), with_points(block.cloud(&walls_alone()), &(0..5).map(roof).collect::<Vec<_>>()));
         let scene = made.scene(&Offset::default(), Motion::Rigid);
-        let loose: Vec<u32> = all(&scene).split_off(scene.votes.firm);
-        let gate_m = made.limits.refinement.loose_gate_sigmas * scene.votes.noise_m;
+        let loose: Vec<u32> = all(&scene).split_off(scene.level_cloud.patch_points);
+        let gate_m = made.limits.refinement.unsegmented_gate_sigmas * scene.level_cloud.noise_m;
         let held = |rise_m: f64| {
             let pose = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, rise_m], ..Offset::default() });
-            Refiner::new(&scene).probes_on_planes(&loose, &pose, scene.unit_m).len()
+            PoseRefiner::new(&scene).point_plane_matches(&loose, &pose, scene.gate_unit_m).len()
         };
         assert_eq!([0.0, 0.9 * gate_m, 1.1 * gate_m].map(held), [5, 5, 0]);
     }
@@ -372,24 +376,25 @@ mod tests {
         known.houses[0].faces[0].corners.iter_mut().filter(|c| c.z > 1.0).for_each(|c| c.y -= 0.15);
         let made = Made::new(known, survey);
         let scene = made.scene(&Offset::default(), Motion::Rigid);
-        let refined = refined(&Refiner::new(&scene), &made.truth(&scene));
+        let refined = refined(&PoseRefiner::new(&scene), &made.truth(&scene));
         let rise_m = made.rise_m(&scene, &refined.city_from_level);
         // Least squares would lower the cloud by metres to make up for the centimetres.
         assert!(rise_m.abs() < 0.05, "{rise_m}");
         let loosest = refined.chart.spectrum(&refined.equations.full()).directions()[0];
-        assert!(loosest.sigma_m.is_finite() && loosest.sigma_m > made.limits.refinement.held_m, "{loosest:?}");
+        assert!(loosest.sigma_m.is_finite() && loosest.sigma_m > made.limits.refinement.most_sigma_m, "{loosest:?}");
     }
 
     #[test]
     fn what_lies_on_a_plane_is_told_plane_by_plane_and_only_within_the_gate() {
         let made = Made::four_houses();
         let scene = made.scene(&Offset::default(), Motion::Similarity);
-        let rows = Refiner::new(&scene).probes_on_planes(&firm(&scene), &made.truth(&scene), scene.unit_m);
+        let rows =
+            PoseRefiner::new(&scene).point_plane_matches(&patch_points(&scene), &made.truth(&scene), scene.gate_unit_m);
         assert!(rows.len() > 2000 && rows.is_sorted_by_key(|row| row.hit.plane), "{}", rows.len());
         let planes = &made.city.planes().planes;
         for row in &rows {
             let across_m = planes[row.hit.plane.0 as usize].plane.signed_distance(&row.place);
-            assert!((across_m - row.hit.across_m).abs() < 1e-9 && across_m.abs() < scene.unit_m, "{row:?}");
+            assert!((across_m - row.hit.across_m).abs() < 1e-9 && across_m.abs() < scene.gate_unit_m, "{row:?}");
         }
     }
 
@@ -398,7 +403,7 @@ mod tests {
         let made = Made::four_houses();
         let scene = made.scene(&Offset::default(), Motion::Similarity);
         let lost = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, 500.0], ..Offset::default() });
-        let refined = refined(&Refiner::new(&scene), &lost);
+        let refined = refined(&PoseRefiner::new(&scene), &lost);
         assert_eq!((refined.city_from_level, refined.equations.full().norm()), (lost, 0.0));
     }
 }

@@ -1,10 +1,10 @@
 //! Candidate pairs of patches and city planes, drawn so that a minimal sample agrees with the start and with itself.
 //!
 //! Question     which patch may lie on which plane of the city, given what the start says and the pairs already chosen?
-//! Input        votes (patches in the level frame), city planes that can be seen, the prior
+//! Input        level cloud (patches in the level frame), city planes that can be seen, the prior
 //! Output       minimal samples: rows for the solvers
 //! Method       with known up the first pair fixes the rotation, by its two azimuths; with free up the first two pairs do, by
-//!              their four normals. What is known of scale and place is a [`Belief`]. The next patch is one on
+//!              their four normals. What is known of scale and place is a [`ScaleTranslationEstimate`]. The next patch is one on
 //!              which it says least; its planes are those that face its way and lie within three sigmas of where
 //!              it expects the patch. Each draw tells the chance that it took the right plane: offers have their likelihoods
 //!              for weights, so an offer with the share w of all is right with chance w and taken as often: sum of w^2.
@@ -18,11 +18,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::Matrix3;
 
-use super::belief::{Belief, RowErrors};
+use super::belief::{RowErrors, ScaleTranslationEstimate};
+use super::level_cloud::{LevelCloud, LevelPatch};
 use super::prior::{Prior, heading_of};
 use super::scene::Scene;
 use super::targets::{LEAST_SIN_FOR_AZIMUTH, Target, Targets, azimuth, elevation, has_azimuth, wrapped};
-use super::votes::{LevelPatch, Votes};
 use crate::geometry::{Plane, Rotation3, Vector3};
 use crate::limits::SearchLimits;
 use crate::planes::{CityPlanes, PlaneId};
@@ -31,7 +31,7 @@ use crate::solvers::Row;
 
 /// A patch on a plane of the city.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair {
+pub struct PatchPlanePair {
     pub patch: u32,
     pub plane: PlaneId,
     /// The plane as the patch sees it: its normal on the patch's side.
@@ -42,8 +42,8 @@ pub struct Pair {
 
 /// A minimal sample: pairs, and what completes them where they leave a direction open.
 #[derive(Clone, Debug)]
-pub struct Sample {
-    pub pairs: Vec<Pair>,
+pub struct MinimalSample {
+    pub pairs: Vec<PatchPlanePair>,
     /// Rows for what the pairs leave open (a height that no floor fixes), drawn from what the start says of it.
     pub completion: Vec<Row>,
     /// The chance that all of it is right, as far as its patches lie on the city at all.
@@ -52,7 +52,7 @@ pub struct Sample {
 
 /// Draws samples.
 pub struct Sampler<'a> {
-    votes: &'a Votes,
+    level_cloud: &'a LevelCloud,
     prior: &'a Prior,
     limits: &'a SearchLimits,
     errors: RowErrors,
@@ -71,7 +71,7 @@ pub struct Sampler<'a> {
 
 /// What a sample goes on with.
 enum Telling {
-    Pair(Drawn<Pair>),
+    PatchPlanePair(Drawn<PatchPlanePair>),
     /// No patch drawn would say anything new.
     AllIsKnown,
     /// None of the patches drawn can lie anywhere.
@@ -105,10 +105,10 @@ const TENDER: usize = 6;
 
 impl<'a> Sampler<'a> {
     pub fn new(scene: &'a Scene<'a>) -> Sampler<'a> {
-        let (votes, prior, limits) = (&scene.votes, &scene.prior, &scene.limits.search);
+        let (level_cloud, prior, limits) = (&scene.level_cloud, &scene.prior, &scene.limits.search);
         let in_sight = scene.city.planes_in_sight(&scene.reach.low, &scene.reach.high);
         let rising = |take: fn(&LevelPatch) -> bool| -> Vec<f64> {
-            let weights = votes.patches.iter().map(|p| if take(p) { p.weight } else { 0.0 });
+            let weights = level_cloud.patches.iter().map(|p| if take(p) { p.weight } else { 0.0 });
             weights
                 .scan(0.0, |sum, weight| {
                     *sum += weight;
@@ -117,19 +117,19 @@ impl<'a> Sampler<'a> {
                 .collect()
         };
         let sampler = Sampler {
-            votes,
+            level_cloud,
             prior,
             limits,
-            errors: RowErrors::new(scene.limits, votes.radius_m),
+            errors: RowErrors::new(scene.limits, level_cloud.radius_m),
             planes: scene.city.planes(),
             targets: Targets::new(scene.city.planes(), &in_sight, limits.smallest_target_m2),
-            firsts: votes.patches.iter().map(|_| OnceLock::new()).collect(),
+            firsts: level_cloud.patches.iter().map(|_| OnceLock::new()).collect(),
             kept: AtomicUsize::new(0),
             all: rising(|_| true),
             turned: rising(|p| has_azimuth(&p.normal)),
             draws: 1,
         };
-        let draws = if sampler.fed() < limits.fed_share { limits.most_draws } else { 1 };
+        let draws = if sampler.fed() < limits.feasible_share { limits.most_draws } else { 1 };
         Sampler { draws, ..sampler }
     }
 
@@ -145,7 +145,7 @@ impl<'a> Sampler<'a> {
     }
 
     /// A sample on so many planes, or `None` where a drawn patch fits nothing.
-    pub fn draw(&self, planes: usize, random: &mut Random) -> Option<Sample> {
+    pub fn draw(&self, planes: usize, random: &mut Random) -> Option<MinimalSample> {
         let mut draft = if self.up_is_known() { self.begin_level(random)? } else { self.begin_leaning(random)? };
         // Scale and translation: with the rotation fixed, each pair settles one of them.
         let unknowns = match self.prior.motion {
@@ -154,7 +154,7 @@ impl<'a> Sampler<'a> {
         };
         while draft.pairs.len() < unknowns {
             match self.telling_pair(&draft.belief, random) {
-                Telling::Pair(pair) => draft.take(self.votes, pair),
+                Telling::PatchPlanePair(pair) => draft.take(self.level_cloud, pair),
                 Telling::AllIsKnown => break,
                 Telling::NothingFits => return None,
             }
@@ -167,51 +167,51 @@ impl<'a> Sampler<'a> {
                 return None;
             }
             let pair = self.next_pair(patch, &draft.belief, random)?;
-            draft.take(self.votes, pair);
+            draft.take(self.level_cloud, pair);
         }
-        Some(Sample { pairs: draft.pairs, completion, chance: draft.chance * chance })
+        Some(MinimalSample { pairs: draft.pairs, completion, chance: draft.chance * chance })
     }
 
     /// Known up: one pair, and the heading that turns its patch into its plane.
     fn begin_level(&self, random: &mut Random) -> Option<Draft> {
         let pair = (0..self.draws).find_map(|_| self.first_pair(random.weighted(&self.turned)?, random))?;
         let mut draft = Draft::new(self.belief(about_up_from(&pair.what.normal, &pair.what.target.normal)));
-        draft.take(self.votes, pair);
+        draft.take(self.level_cloud, pair);
         Some(draft)
     }
 
     /// Free up: two pairs, and the rotation that lays both patches along their planes.
     fn begin_leaning(&self, random: &mut Random) -> Option<Draft> {
         let [first, second] = [random.weighted(&self.all)?, random.weighted(&self.all)?];
-        let normal = |i: usize| &self.votes.patches[i].normal;
+        let normal = |i: usize| &self.level_cloud.patches[i].normal;
         if normal(first).cross(normal(second)).norm() < LEAST_SIN_BETWEEN {
             return None;
         }
         let pair = self.first_pair(first, random)?;
         let Drawn { what: (rotation, other), chance } = self.second_pair(&pair.what, second, random)?;
         let mut draft = Draft::new(self.belief(rotation));
-        draft.take(self.votes, pair);
-        draft.take(self.votes, Drawn { what: other, chance });
+        draft.take(self.level_cloud, pair);
+        draft.take(self.level_cloud, Drawn { what: other, chance });
         Some(draft)
     }
 
     /// A pair of which the belief says little. A patch that can lie nowhere is not on the city, and another takes its turn.
-    fn telling_pair(&self, belief: &Belief, random: &mut Random) -> Telling {
+    fn telling_pair(&self, belief: &ScaleTranslationEstimate, random: &mut Random) -> Telling {
         for _ in 0..self.draws {
             let Some(patch) = self.least_known(belief, random) else { return Telling::AllIsKnown };
             if let Some(pair) = self.next_pair(patch, belief, random) {
-                return Telling::Pair(pair);
+                return Telling::PatchPlanePair(pair);
             }
         }
         Telling::NothingFits
     }
 
-    fn belief(&self, rotation: Matrix3<f64>) -> Belief {
-        Belief::new(self.prior, rotation, self.errors)
+    fn belief(&self, rotation: Matrix3<f64>) -> ScaleTranslationEstimate {
+        ScaleTranslationEstimate::new(self.prior, rotation, self.errors)
     }
 
     /// A plane for the first patch of a sample.
-    fn first_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<Pair>> {
+    fn first_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<PatchPlanePair>> {
         let kept = &self.firsts[patch];
         if kept.get().is_some() || self.kept.load(Ordering::Relaxed) < MOST_OFFERS_KEPT {
             return self.draw_first(patch, kept.get_or_init(|| self.counted(self.first_offers(patch))), random);
@@ -224,16 +224,16 @@ impl<'a> Sampler<'a> {
         offers
     }
 
-    fn draw_first(&self, patch: usize, offers: &Offers, random: &mut Random) -> Option<Drawn<Pair>> {
+    fn draw_first(&self, patch: usize, offers: &Offers, random: &mut Random) -> Option<Drawn<PatchPlanePair>> {
         let (id, is_turned_over) = offers.what[random.weighted(&offers.sums)?];
-        let normal = self.votes.patches[patch].normal;
+        let normal = self.level_cloud.patches[patch].normal;
         let normal = if is_turned_over { -normal } else { normal };
         Some(Drawn { what: self.pair(patch, normal, id), chance: offers.chance })
     }
 
     fn first_offers(&self, patch: usize) -> Offers {
         let mut offers = Offers::default();
-        for (normal, is_turned_over) in sides(&self.votes.patches[patch]).zip([false, true]) {
+        for (normal, is_turned_over) in sides(&self.level_cloud.patches[patch]).zip([false, true]) {
             let offer = |t: &Target, likelihood: f64| offers.add(likelihood, (t.id, is_turned_over));
             if self.up_is_known() {
                 self.offer_turned(patch, &normal, offer);
@@ -251,7 +251,7 @@ impl<'a> Sampler<'a> {
         self.targets.each_facing(azimuth(normal), self.prior.most_heading_rad(), |t| {
             if has_same_tilt(t) {
                 let turned = belief.turned(about_up_from(normal, &t.normal()));
-                let likelihood = turned.expect(&self.votes.patches[patch].center).likelihood(t);
+                let likelihood = turned.expect(&self.level_cloud.patches[patch].center).likelihood(t);
                 likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
             }
         });
@@ -265,16 +265,21 @@ impl<'a> Sampler<'a> {
         for t in self.targets.all() {
             let Some(rotation) = turn_onto(t) else { continue };
             let leaning = belief.turned(rotation).spinning(self.prior.spin_sigma_about(&t.normal()));
-            let likelihood = leaning.expect(&self.votes.patches[patch].center).likelihood(t);
+            let likelihood = leaning.expect(&self.level_cloud.patches[patch].center).likelihood(t);
             likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
         }
     }
 
     /// A plane for the second patch under free up, and the rotation that lays both normals along their planes'.
-    fn second_pair(&self, first: &Pair, patch: usize, random: &mut Random) -> Option<Drawn<(Matrix3<f64>, Pair)>> {
-        let p = &self.votes.patches[patch];
+    fn second_pair(
+        &self,
+        first: &PatchPlanePair,
+        patch: usize,
+        random: &mut Random,
+    ) -> Option<Drawn<(Matrix3<f64>, PatchPlanePair)>> {
+        let p = &self.level_cloud.patches[patch];
         let belief = self.belief(Matrix3::identity());
-        let first_center = &self.votes.patches[first.patch as usize].center;
+        let first_center = &self.level_cloud.patches[first.patch as usize].center;
         let mut choice = Choice::default();
         for normal in sides(p) {
             let cos = first.normal.dot(&normal);
@@ -300,8 +305,8 @@ impl<'a> Sampler<'a> {
         Some(Drawn { what: (rotation, self.pair(patch, normal, id)), chance })
     }
 
-    fn pair(&self, patch: usize, normal: Vector3<f64>, plane: PlaneId) -> Pair {
-        Pair { patch: patch as u32, plane, target: self.planes.planes[plane.0 as usize].plane, normal }
+    fn pair(&self, patch: usize, normal: Vector3<f64>, plane: PlaneId) -> PatchPlanePair {
+        PatchPlanePair { patch: patch as u32, plane, target: self.planes.planes[plane.0 as usize].plane, normal }
     }
 
     /// The rotation that lays a normal onto a target's: a heading first, as far as both have an azimuth, then the least tilt;
@@ -337,12 +342,12 @@ impl<'a> Sampler<'a> {
     }
 
     /// Of a few patches drawn by weight, the one whose place is known least; `None` when all are known well.
-    fn least_known(&self, belief: &Belief, random: &mut Random) -> Option<usize> {
+    fn least_known(&self, belief: &ScaleTranslationEstimate, random: &mut Random) -> Option<usize> {
         let mut best = None;
-        let mut most = self.limits.learned_m.powi(2);
+        let mut most = self.limits.informative_sigma_m.powi(2);
         for _ in 0..TENDER {
             let i = random.weighted(&self.all)?;
-            let p = &self.votes.patches[i];
+            let p = &self.level_cloud.patches[i];
             let variance = belief.variance(&p.center, &(belief.turn(&p.normal)));
             if variance > most {
                 most = variance;
@@ -352,8 +357,13 @@ impl<'a> Sampler<'a> {
         best
     }
 
-    fn next_pair(&self, patch: usize, belief: &Belief, random: &mut Random) -> Option<Drawn<Pair>> {
-        let p = &self.votes.patches[patch];
+    fn next_pair(
+        &self,
+        patch: usize,
+        belief: &ScaleTranslationEstimate,
+        random: &mut Random,
+    ) -> Option<Drawn<PatchPlanePair>> {
+        let p = &self.level_cloud.patches[patch];
         let expected = belief.expect(&p.center);
         let mut choice = Choice::default();
         for side in sides(p) {
@@ -400,18 +410,18 @@ impl Offers {
 
 /// A sample on its way.
 struct Draft {
-    belief: Belief,
-    pairs: Vec<Pair>,
+    belief: ScaleTranslationEstimate,
+    pairs: Vec<PatchPlanePair>,
     chance: f64,
 }
 
 impl Draft {
-    fn new(belief: Belief) -> Draft {
+    fn new(belief: ScaleTranslationEstimate) -> Draft {
         Draft { belief, pairs: Vec::with_capacity(4), chance: 1.0 }
     }
 
-    fn take(&mut self, votes: &Votes, drawn: Drawn<Pair>) {
-        self.belief.learn(&votes.patches[drawn.what.patch as usize].center, &drawn.what.target);
+    fn take(&mut self, level_cloud: &LevelCloud, drawn: Drawn<PatchPlanePair>) {
+        self.belief.learn(&level_cloud.patches[drawn.what.patch as usize].center, &drawn.what.target);
         self.chance *= drawn.chance;
         self.pairs.push(drawn.what);
     }
@@ -491,7 +501,7 @@ mod tests {
     use crate::synthetic::Offset;
 
     /// Samples on four planes of four houses, from a start that is off by a sigma or so.
-    fn samples(scene: &Scene) -> Vec<Sample> {
+    fn samples(scene: &Scene) -> Vec<MinimalSample> {
         let sampler = Sampler::new(scene);
         (0..2000).filter_map(|stream| sampler.draw(4, &mut Random::stream(7, stream))).collect()
     }
@@ -526,8 +536,8 @@ mod tests {
         let scene = made.scene(&OFF, Motion::Similarity);
         let truth = made.truth(&scene);
         // A pair is right where the truth puts the patch into its plane.
-        let is_right = |pair: &Pair| {
-            let center = truth.apply(&scene.votes.patches[pair.patch as usize].center);
+        let is_right = |pair: &PatchPlanePair| {
+            let center = truth.apply(&scene.level_cloud.patches[pair.patch as usize].center);
             pair.target.signed_distance(&center).abs() < 0.3
                 && (truth.rotation * pair.normal).dot(&pair.target.normal) > 0.95
         };
@@ -589,9 +599,9 @@ mod tests {
             let forgetful = Sampler::new(&scene);
             forgetful.kept.store(MOST_OFFERS_KEPT, Ordering::Relaxed);
             let draw = |stream| forgetful.draw(4, &mut Random::stream(7, stream));
-            let found: Vec<Sample> = (0..2000).filter_map(draw).collect();
+            let found: Vec<MinimalSample> = (0..2000).filter_map(draw).collect();
             assert_eq!(found.len(), kept.len());
-            let told = |sample: &Sample| sample.pairs.iter().map(|p| (p.patch, p.plane)).collect::<Vec<_>>();
+            let told = |sample: &MinimalSample| sample.pairs.iter().map(|p| (p.patch, p.plane)).collect::<Vec<_>>();
             assert!(found.iter().zip(&kept).all(|(a, b)| told(a) == told(b) && a.chance == b.chance));
         }
     }

@@ -1,20 +1,20 @@
-//! Everything that a search works on: the cloud as votes, the city, and what is known of the pose beforehand.
+//! Everything that a search works on: the cloud in the level frame, the city, and what is known of the pose beforehand.
 
 use std::sync::Arc;
 
+use super::level_cloud::LevelCloud;
 use super::prior::{Prior, Reach};
 use super::scoring::Mover;
-use super::votes::Votes;
 use crate::geometry::{Point3, Similarity, Start, Vector3};
 use crate::limits::Limits;
-use crate::planes::{FacetGrid, Facing, Hit, Look, Patches, PreparedCity, Probe, Upright};
+use crate::planes::{FacetGrid, Facing, Hit, Look, OrientedPoint, Patches, PreparedCity, Upright};
 use crate::robust::Motion;
 
 /// A cloud in a city.
 pub struct Scene<'a> {
     pub city: &'a PreparedCity,
     pub limits: &'a Limits,
-    pub votes: Votes,
+    pub level_cloud: LevelCloud,
     pub prior: Prior,
     /// The part of the city that the cloud can come to lie in. What lies beyond is met by stray points alone, of which a handful would count
     /// as much as a facade: a plane's own error bounds what its points say.
@@ -23,10 +23,10 @@ pub struct Scene<'a> {
     narrow_grid: Arc<FacetGrid>,
     wide_grid: Arc<FacetGrid>,
     /// What "near" means to all gates, metres of the start.
-    pub unit_m: f64,
+    pub gate_unit_m: f64,
 }
 
-/// Probes that are looked up together.
+/// Sample points that are looked up together.
 const BLOCK: usize = 32;
 
 impl<'a> Scene<'a> {
@@ -39,45 +39,52 @@ impl<'a> Scene<'a> {
         upright: &Upright,
         limits: &'a Limits,
     ) -> Scene<'a> {
-        let votes = Votes::new(patches, start.city_from_sfm(), upright, limits);
-        let prior =
-            Prior::new(start, votes.center_in_city, votes.radius_m, motion, upright.known, city.model.bounds(), limits);
-        let unit_m = limits.model_unit_m + limits.noise_sigmas * votes.noise_m;
+        let level_cloud = LevelCloud::new(patches, start.city_from_sfm(), upright, limits);
+        let prior = Prior::new(
+            start,
+            level_cloud.center_in_city,
+            level_cloud.radius_m,
+            motion,
+            upright.known,
+            city.model.bounds(),
+            limits,
+        );
+        let gate_unit_m = limits.model_unit_m + limits.noise_sigmas * level_cloud.noise_m;
         // A pose may be as much larger than the start as the scale allows, and its gates with it.
-        let grid = |gate_units: f64| city.grid(gate_units * unit_m * prior.most_scale());
+        let grid = |gate_units: f64| city.grid(gate_units * gate_unit_m * prior.most_scale());
         let (narrow_grid, wide_grid) = (grid(limits.walk.basin_gates_units[0]), grid(limits.search.gate_units));
-        let reach = prior.reach(&votes.extent());
-        Scene { city, limits, votes, prior, reach, narrow_grid, wide_grid, unit_m }
+        let reach = prior.reach(&level_cloud.extent());
+        Scene { city, limits, level_cloud, prior, reach, narrow_grid, wide_grid, gate_unit_m }
     }
 
     /// The facet that a point lies on.
     #[cfg(test)]
-    pub fn nearest(&self, probe: &Probe, gate_m: f64) -> Option<Hit> {
-        if !self.reach.contains(&probe.position) {
+    pub fn nearest(&self, sample_point: &OrientedPoint, gate_m: f64) -> Option<Hit> {
+        if !self.reach.contains(&sample_point.position) {
             return None;
         }
-        self.city.nearest(self.grid(gate_m), probe, gate_m)
+        self.city.nearest(self.grid(gate_m), sample_point, gate_m)
     }
 
-    /// Tells `see` which probes of a panel (by their place in it, in order) meet a facet under a pose, where in the city, and which. Each
-    /// probe has a gate of its own, metres of the city, the widest of which is told beforehand.
+    /// Tells `see` which sample points of a point subset (by their place in it, in order) meet a facet under a pose, where in the city, and which. Each
+    /// sample point has a gate of its own, metres of the city, the widest of which is told beforehand.
     #[inline]
     pub fn meet(
         &self,
-        panel: &[u32],
+        point_subset: &[u32],
         city_from_level: &Similarity,
         widest_m: f64,
         gate_m: impl Fn(u32) -> f64,
-        mut see: impl FnMut(usize, &Probe, &Hit),
+        mut see: impl FnMut(usize, &OrientedPoint, &Hit),
     ) {
         let (mover, grid) = (Mover::new(city_from_level), self.grid(widest_m));
         let mut facing: Option<(u32, Vector3<f64>, Facing)> = None;
         let mut looks: Vec<(usize, Point3<f64>, Look)> = Vec::with_capacity(BLOCK);
-        for first in (0..panel.len()).step_by(BLOCK) {
-            let block = first..panel.len().min(first + BLOCK);
+        for first in (0..point_subset.len()).step_by(BLOCK) {
+            let block = first..point_subset.len().min(first + BLOCK);
             looks.clear();
             for k in block {
-                let place = mover.place(&self.votes.probes[panel[k] as usize]);
+                let place = mover.place(&self.level_cloud.sample_points[point_subset[k] as usize]);
                 let look = if self.reach.contains(&place) { self.city.look(grid, &place) } else { None };
                 looks.extend(look.map(|look| (k, place, look)));
             }
@@ -87,19 +94,19 @@ impl<'a> Scene<'a> {
             looks.retain(|(_, _, look)| !look.is_empty());
             looks.iter().for_each(|(_, _, look)| look.fetch_triangles());
             for (k, position, look) in &looks {
-                let i = panel[*k];
-                let probe = &self.votes.probes[i as usize];
-                // Probes of one patch face one way.
+                let i = point_subset[*k];
+                let sample_point = &self.level_cloud.sample_points[i as usize];
+                // Sample points of one patch face one way.
                 let (_, normal, facing) = match &mut facing {
-                    Some(known) if faces_as(&self.votes.probes[known.0 as usize], probe) => known,
+                    Some(known) if faces_as(&self.level_cloud.sample_points[known.0 as usize], sample_point) => known,
                     other => {
-                        let normal = mover.direction(probe);
-                        other.insert((i, normal, grid.facing(&normal, probe.min_cos, probe.sided)))
+                        let normal = mover.direction(sample_point);
+                        other.insert((i, normal, grid.facing(&normal, sample_point.min_cos, sample_point.sided)))
                     }
                 };
-                let probe = Probe { position: *position, normal: *normal, ..*probe };
-                if let Some(hit) = look.nearest(&probe, facing, gate_m(i)) {
-                    see(*k, &probe, &hit);
+                let sample_point = OrientedPoint { position: *position, normal: *normal, ..*sample_point };
+                if let Some(hit) = look.nearest(&sample_point, facing, gate_m(i)) {
+                    see(*k, &sample_point, &hit);
                 }
             }
         }
@@ -112,13 +119,13 @@ impl<'a> Scene<'a> {
 
     /// To the city's local frame.
     pub fn city_from_sfm(&self, city_from_level: &Similarity) -> Similarity {
-        *city_from_level * self.votes.level_from_sfm
+        *city_from_level * self.level_cloud.level_from_sfm
     }
 }
 
 #[inline]
-fn faces_as(probe: &Probe, other: &Probe) -> bool {
-    probe.normal == other.normal && probe.min_cos == other.min_cos && probe.sided == other.sided
+fn faces_as(sample_point: &OrientedPoint, other: &OrientedPoint) -> bool {
+    sample_point.normal == other.normal && sample_point.min_cos == other.min_cos && sample_point.sided == other.sided
 }
 
 #[cfg(test)]
@@ -144,8 +151,8 @@ mod tests {
             for triangle in facet.triangles.clone().filter(|t| made.city.is_exposed(*t)) {
                 let [a, b, c] = made.city.corners(triangle);
                 let position = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-                let probe = Probe { position, normal: facet.plane.normal, sided: true, min_cos: 0.9 };
-                let met: Option<PlaneId> = scene.nearest(&probe, scene.unit_m).map(|hit| hit.plane);
+                let sample_point = OrientedPoint { position, normal: facet.plane.normal, sided: true, min_cos: 0.9 };
+                let met: Option<PlaneId> = scene.nearest(&sample_point, scene.gate_unit_m).map(|hit| hit.plane);
                 let is_within = scene.reach.contains(&position);
                 assert_eq!(met, is_within.then(|| made.city.planes().of_facet(id)), "{position}");
                 *(if is_within { &mut within } else { &mut beyond }) += 1;
@@ -159,7 +166,7 @@ mod tests {
         let made = Made::four_houses();
         for motion in [Motion::Rigid, Motion::Similarity] {
             let scene = made.scene(&Offset::default(), motion);
-            let widest_m = made.limits.search.gate_units * scene.unit_m * scene.prior.most_scale();
+            let widest_m = made.limits.search.gate_units * scene.gate_unit_m * scene.prior.most_scale();
             assert!(scene.wide_grid.reach_m() >= widest_m, "{} {widest_m}", scene.wide_grid.reach_m());
         }
     }

@@ -1,10 +1,10 @@
 //! The robust search for poses: which minimal samples, and how many of them.
 
-use super::economy::{cheapest, prospects};
 use super::pose_search::PoseSearch;
-use super::refine::Refiner;
+use super::refine::PoseRefiner;
 use super::sampler::Sampler;
 use super::scene::Scene;
+use super::solver_choice::{cheapest, solver_costs};
 use crate::geometry::{Similarity, Vector3};
 use crate::observer::{Cancelled, Observer, Stage, go_on};
 use crate::robust::{Motion, Problem, Random, Ranked, RansacOptions, ransac};
@@ -26,10 +26,12 @@ pub const NO_SOLVER: &str = "none";
 /// Searches a scene with the configuration that is expected to cost least; the observer is told of samples.
 pub fn search(scene: &Scene, seed: u64, observer: &dyn Observer) -> Result<Hypotheses, Cancelled> {
     let limits = &scene.limits.search;
-    let (sampler, sought, panel) = (Sampler::new(scene), sought(scene), scene.votes.panel(limits.ranking_probes));
-    let with = |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, panel: &panel };
+    let (sampler, sought, point_subset) =
+        (Sampler::new(scene), sought(scene), scene.level_cloud.point_subset(limits.ranking_points));
+    let with =
+        |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, point_subset: &point_subset };
     let searches: Vec<PoseSearch> = sought.configurations().iter().map(with).collect();
-    let Some(configuration) = cheapest(&prospects(&searches, limits), limits) else {
+    let Some(configuration) = cheapest(&solver_costs(&searches, limits), limits) else {
         return Ok(Hypotheses { ranked: Vec::new(), solver: NO_SOLVER.to_owned(), samples: 0 });
     };
     let options = RansacOptions {
@@ -56,8 +58,8 @@ pub fn search(scene: &Scene, seed: u64, observer: &dyn Observer) -> Result<Hypot
 /// Source: local optimisation in random consensus (Chum, Matas, Kittler 2003)
 struct Improving<'a> {
     search: PoseSearch<'a>,
-    refiner: Refiner<'a>,
-    panel: Vec<u32>,
+    refiner: PoseRefiner<'a>,
+    point_subset: Vec<u32>,
     gates_m: Vec<f64>,
     ranking_gate_m: f64,
 }
@@ -67,10 +69,10 @@ impl<'a> Improving<'a> {
         let limits = &scene.limits.search;
         Improving {
             search,
-            refiner: Refiner::new(scene),
-            panel: scene.votes.panel(limits.improving_probes),
-            gates_m: limits.improving_gates_units.iter().map(|gate| gate * scene.unit_m).collect(),
-            ranking_gate_m: limits.ranking_gate_units * scene.unit_m,
+            refiner: PoseRefiner::new(scene),
+            point_subset: scene.level_cloud.point_subset(limits.local_optimization_points),
+            gates_m: limits.local_optimization_gates_units.iter().map(|gate| gate * scene.gate_unit_m).collect(),
+            ranking_gate_m: limits.ranking_gate_units * scene.gate_unit_m,
         }
     }
 }
@@ -92,9 +94,9 @@ impl Problem for Improving<'_> {
 
     fn improve(&self, _: f64, pose: Similarity) -> (f64, Similarity) {
         let scene = self.search.scene;
-        let refined = self.refiner.refine(&self.panel, &pose, &self.gates_m).city_from_level;
+        let refined = self.refiner.refine(&self.point_subset, &pose, &self.gates_m).city_from_level;
         let better = if scene.prior.reaches(&refined) { refined } else { pose };
-        (scene.score(&self.panel, &better, self.ranking_gate_m), better)
+        (scene.score(&self.point_subset, &better, self.ranking_gate_m), better)
     }
 
     fn same(&self, a: &Similarity, b: &Similarity) -> bool {
@@ -124,13 +126,14 @@ mod tests {
     /// Of the poses kept, the nearest to the truth: how far it moves the scene, metres.
     fn nearest_m(made: &Made, scene: &Scene, ranked: &[Ranked<Similarity>]) -> f64 {
         let truth = made.truth(scene);
-        ranked.iter().map(|r| largest_shift(&r.pose, &truth, scene.votes.radius_m)).fold(f64::INFINITY, f64::min)
+        ranked.iter().map(|r| largest_shift(&r.pose, &truth, scene.level_cloud.radius_m)).fold(f64::INFINITY, f64::min)
     }
 
     /// The poses that samples of one configuration lead to.
     fn searched(scene: &Scene, configuration: &Configuration, seed: u64) -> Vec<Ranked<Similarity>> {
-        let (sampler, panel) = (Sampler::new(scene), scene.votes.panel(200));
-        let search = PoseSearch { scene, sampler: &sampler, sought: sought(scene), configuration, panel: &panel };
+        let (sampler, point_subset) = (Sampler::new(scene), scene.level_cloud.point_subset(200));
+        let search =
+            PoseSearch { scene, sampler: &sampler, sought: sought(scene), configuration, point_subset: &point_subset };
         let options = RansacOptions {
             seed,
             keep: 60,

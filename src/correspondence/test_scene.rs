@@ -81,7 +81,7 @@ impl Made {
 
     /// The pose of a scene that is off the truth by so much.
     pub fn pose(&self, scene: &Scene, off: &Offset) -> Similarity {
-        self.city_from_sfm(off) * scene.votes.level_from_sfm.inverse()
+        self.city_from_sfm(off) * scene.level_cloud.level_from_sfm.inverse()
     }
 
     pub fn truth(&self, scene: &Scene) -> Similarity {
@@ -101,9 +101,9 @@ impl Made {
         (found * self.survey.city_from_sfm.inverse()).apply(&middle).z - middle.z
     }
 
-    /// The face that a probe of a scene was drawn on.
-    pub fn face_of(&self, scene: &Scene, probe: u32) -> Option<usize> {
-        let point = self.patches.support[scene.votes.point_of[probe as usize] as usize];
+    /// The face that a sample point of a scene was drawn on.
+    pub fn face_of(&self, scene: &Scene, sample_point: u32) -> Option<usize> {
+        let point = self.patches.support[scene.level_cloud.point_of[sample_point as usize] as usize];
         self.survey.face_of_point[point.0 as usize]
     }
 }
@@ -120,12 +120,12 @@ pub fn with_points(mut survey: Survey, seen: &[(Point3<f64>, Vector3<f64>)]) -> 
     survey
 }
 
-/// All probes of patches.
-pub fn firm(scene: &Scene) -> Vec<u32> {
-    (0..scene.votes.firm as u32).collect()
+/// All sample points of patches.
+pub fn patch_points(scene: &Scene) -> Vec<u32> {
+    (0..scene.level_cloud.patch_points as u32).collect()
 }
 
-/// All probes.
+/// All sample points.
 pub fn all(scene: &Scene) -> Vec<u32> {
-    (0..scene.votes.probes.len() as u32).collect()
+    (0..scene.level_cloud.sample_points.len() as u32).collect()
 }

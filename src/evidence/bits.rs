@@ -1,30 +1,30 @@
-//! What the witnesses say for a pose, in bits.
+//! What the planes of the cloud say for a pose, in bits.
 //!
-//! Question     how much likelier is what the witnesses meet if the pose is right than if it was fitted to another place?
-//! Input        what each piece of each witness meets, how much of the cloud the city hides, and the rates of both by chance
-//! Output       the logarithm of the likelihood ratio to base 2, and what each witness adds to it
+//! Question     how much likelier is what the planes of the cloud meet if the pose is right than if it was fitted to another place?
+//! Input        what each piece of each plane of the cloud meets, how much of the cloud the city occludes, and the rates of both by chance
+//! Output       the logarithm of the likelihood ratio to base 2, and what each plane of the cloud adds to it
 //! Method       the model knows a share m of what the cloud saw; what it knows lies on it with Gaussian errors of a scale s, what it does
 //!              not know meets the city as by chance. Neither is demanded: the ratio is averaged over both (marginal likelihood), over m by
-//!              Jeffreys' prior, once for each class of witness and once for all in common. So a cloud of which the model knows a fifth loses a third of a bit
-//!              by a miss and gains three or four by a hit. The pieces of a witness share its one vote: their logarithms are averaged
+//!              Jeffreys' prior, once for each class of plane of the cloud and once for all in common. So a cloud of which the model knows a fifth loses a third of a bit
+//!              by a miss and gains three or four by a hit. The pieces of a plane of the cloud count as one observation: their logarithms are averaged
 //! Source       evidence against chance: Desolneux, Moisan, Morel 2000; Moisan and Stival 2004; marginal likelihoods: Kass and
 //!              Raftery 1995; the prior, and that no other loses less where the worst is taken: Krichevsky and Trofimov 1981
-//! Assumptions  witnesses meet the city of their own accord. By Markov's inequality a wrong pose then reaches b bits with a chance below 2^-b
+//! Assumptions  planes of the cloud meet the city independently of each other. By Markov's inequality a wrong pose then reaches b bits with a chance below 2^-b
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use super::chance::Chance;
-use super::hidden;
+use super::chance::NullRates;
+use super::cloud_planes::{CLASSES, CloudPlanes};
+use super::occluded;
 use super::outcomes::{EDGES, KINDS, MISSED, Outcomes};
-use super::witnesses::{CLASSES, Witnesses};
 
 /// Evidence of a pose.
 #[derive(Clone, Debug, Default)]
-pub struct Weighed {
+pub struct PoseEvidence {
     /// log2 of how much likelier all that is met is under the pose than by chance.
     pub bits: f64,
-    /// What each witness says at the likeliest share and scale.
-    pub by_witness: Vec<f64>,
+    /// What each plane of the cloud says at the likeliest share and scale.
+    pub by_cloud_plane: Vec<f64>,
 }
 
 /// Scales of the model's error, shares of the tolerance, one twice the other: from the noise of a good scan to the whole tolerance.
@@ -38,29 +38,29 @@ fn share(k: usize) -> f64 {
     ((k as f64 + 0.5) / SHARES as f64 * FRAC_PI_2).sin().powi(2)
 }
 
-/// Log ratios of one class, or of one witness, for each share that the model may know.
+/// Log ratios of one class, or of one plane of the cloud, for each share that the model may know.
 type ByShare = [f64; SHARES];
 
-/// Weighs what is met, and the share of the cloud that the city hides.
-pub fn weigh(witnesses: &Witnesses, outcomes: &Outcomes, hidden: f64, chance: &Chance) -> Weighed {
-    let all = SCALES.map(|scale| on_model_off_by(scale, witnesses, outcomes, chance));
-    let bits = log2_mean_exp2(&all.each_ref().map(|weighed| weighed.bits)) + hidden::bits(hidden, &chance.hidden);
+/// Weighs what is met, and the share of the cloud that the city occludes.
+pub fn weigh(cloud_planes: &CloudPlanes, outcomes: &Outcomes, hidden: f64, chance: &NullRates) -> PoseEvidence {
+    let all = SCALES.map(|scale| on_model_off_by(scale, cloud_planes, outcomes, chance));
+    let bits = log2_mean_exp2(&all.each_ref().map(|weighed| weighed.bits)) + occluded::bits(hidden, &chance.hidden);
     let likeliest = all.into_iter().max_by(|a, b| a.bits.total_cmp(&b.bits)).unwrap_or_default();
-    Weighed { bits, ..likeliest }
+    PoseEvidence { bits, ..likeliest }
 }
 
-fn on_model_off_by(scale: f64, witnesses: &Witnesses, outcomes: &Outcomes, chance: &Chance) -> Weighed {
+fn on_model_off_by(scale: f64, cloud_planes: &CloudPlanes, outcomes: &Outcomes, chance: &NullRates) -> PoseEvidence {
     let known = rates_of_known(scale);
     let tables = chance.rates.each_ref().map(|chance| log_ratios(&known, chance));
-    let mut logs: Vec<ByShare> = vec![[0.0; SHARES]; witnesses.class.len()];
-    for (piece, met) in witnesses.pieces.iter().zip(outcomes) {
-        let table = &tables[witnesses.class_of(piece)];
-        for (log, ratios) in logs[piece.witness as usize].iter_mut().zip(table) {
+    let mut logs: Vec<ByShare> = vec![[0.0; SHARES]; cloud_planes.class.len()];
+    for (piece, met) in cloud_planes.pieces.iter().zip(outcomes) {
+        let table = &tables[cloud_planes.class_of(piece)];
+        for (log, ratios) in logs[piece.cloud_plane as usize].iter_mut().zip(table) {
             *log += piece.share * met.iter().zip(ratios).map(|(share, ratio)| share * ratio).sum::<f64>();
         }
     }
     let mut of_class = [[0.0; SHARES]; CLASSES];
-    for (class, logs) in witnesses.class.iter().zip(&logs) {
+    for (class, logs) in cloud_planes.class.iter().zip(&logs) {
         of_class[*class as usize].iter_mut().zip(logs).for_each(|(sum, log)| *sum += log);
     }
     let in_common: ByShare = std::array::from_fn(|k| of_class.iter().map(|sums| sums[k]).sum());
@@ -68,11 +68,12 @@ fn on_model_off_by(scale: f64, witnesses: &Witnesses, outcomes: &Outcomes, chanc
     let apart: f64 = of_class.iter().map(|sums| log2_mean_exp2(sums)).sum();
     let bits = log2_mean_exp2(&[apart, log2_mean_exp2(&in_common)]);
     let likeliest = of_class.map(|sums| (0..SHARES).fold(0, |best, k| if sums[k] > sums[best] { k } else { best }));
-    let by_witness = witnesses.class.iter().zip(&logs).map(|(class, log)| log[likeliest[*class as usize]]).collect();
-    Weighed { bits, by_witness }
+    let by_cloud_plane =
+        cloud_planes.class.iter().zip(&logs).map(|(class, log)| log[likeliest[*class as usize]]).collect();
+    PoseEvidence { bits, by_cloud_plane }
 }
 
-/// What probes meet on surfaces that the model knows, off by this as one sigma (shares of the tolerance).
+/// What sample points meet on surfaces that the model knows, off by this as one sigma (shares of the tolerance).
 fn rates_of_known(scale: f64) -> [f64; KINDS] {
     let within = EDGES.map(|edge| erf(edge / (scale * SQRT_2)));
     std::array::from_fn(|kind| match kind {

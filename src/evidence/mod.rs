@@ -3,9 +3,9 @@
 
 mod bits;
 mod chance;
-mod contest;
-mod hidden;
+mod evaluation;
+mod occluded;
 mod outcomes;
-mod witnesses;
+mod cloud_planes;
 
-pub use contest::{Contest, Contestant};
+pub use evaluation::{CandidateEvaluation, EvaluatedCandidate};

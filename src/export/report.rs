@@ -6,7 +6,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use crate::city::CityModel;
 use crate::geometry::Similarity;
 use crate::reconstruction::Reconstruction;
-use crate::verdict::{Alignment, Certainty, Freedom, ModelErrors, PlaneEvidence, Support, Verdict};
+use crate::verdict::{Alignment, Certainty, Freedom, ModelErrors, PlaneSupport, Support, Verdict};
 
 const SCHEMA: &str = "cityweld.alignment/1";
 
@@ -240,7 +240,7 @@ fn model_errors_json(errors: &ModelErrors) -> Result<Box<RawValue>, serde_json::
     to_raw_value(&ModelErrorsJson { walls_inset, tops_lower, buildings, fronts, bending })
 }
 
-fn evidence_json(evidence: &PlaneEvidence) -> Result<Box<RawValue>, serde_json::Error> {
+fn evidence_json(evidence: &PlaneSupport) -> Result<Box<RawValue>, serde_json::Error> {
     #[derive(Serialize)]
     struct EvidenceJson<'a> {
         plane: u32,
@@ -248,7 +248,7 @@ fn evidence_json(evidence: &PlaneEvidence) -> Result<Box<RawValue>, serde_json::
         points: usize,
         rms_m: f64,
     }
-    let PlaneEvidence { plane, object, points, rms_m } = evidence;
+    let PlaneSupport { plane, object, points, rms_m } = evidence;
     to_raw_value(&EvidenceJson { plane: *plane, object, points: *points, rms_m: *rms_m })
 }
 
@@ -315,7 +315,7 @@ mod tests {
             }],
             covariance: [[1e-9; 7]; 7],
             support: Support { points: 9, trusted_points: 7, planes: 3, rms_m: 0.11, median_m: 0.06 },
-            evidence: vec![PlaneEvidence { plane: 17, object: "building \"42\"".into(), points: 4, rms_m: 0.08 }],
+            evidence: vec![PlaneSupport { plane: 17, object: "building \"42\"".into(), points: 4, rms_m: 0.08 }],
             search: SearchSummary { solver: "similarity (3,2,1,1)".into(), samples: 1830, seed: u64::MAX },
             warnings: vec!["one".into()],
         }

@@ -11,7 +11,7 @@ const SHAPE_TOLERANCE: f64 = 0.02;
 /// halve them once or twice, so that the originals have four times the width and height.
 const MOST_TIMES_THE_CAMERA: u64 = 16;
 
-/// ... and this many in any case: twelve megabytes.
+/// Pixels that are allowed in any case: twelve megabytes.
 const PIXELS_OF_ANY_PICTURE: u64 = 4_000_000;
 
 /// Pixels of a picture without a camera: what [`super::files`] has memory for.

@@ -1,4 +1,4 @@
-//! Facets of one object that lie in one plane become one [`CityPlane`]: one surface, one model error, one vote.
+//! Facets of one object that lie in one plane become one [`CityPlane`]: one surface, one model error, one observation.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ pub struct PlaneId(pub u32);
 
 /// Facets whose normals differ by no more than this are candidates for one plane.
 const NORMAL_TOLERANCE_DEG: f64 = 1.5;
-/// ... if also every corner lies within this distance of the plane of the largest of them. City models are drawn to
+/// Facets of one normal are one plane if every corner lies within this distance of the plane of the largest of them. City models are drawn to
 /// centimetres; walls that step by a brick (0.1 m) are different planes.
 const OFFSET_TOLERANCE_M: f64 = 0.03;
 

@@ -11,8 +11,8 @@ use std::sync::OnceLock;
 
 use super::city_planes::PlaneId;
 use super::directions::{Directions, Facing};
-use super::exposure::Exposure;
 use super::facet_tile::{Cell, List, TILE, Tile, TileSite};
+use super::facet_visibility::FacetVisibility;
 use super::surface::CitySurface;
 use crate::city::CityModel;
 use crate::geometry::{Point3, Vector3};
@@ -37,7 +37,7 @@ impl Hit {
 
 /// A point as the grid sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Probe {
+pub struct OrientedPoint {
     pub position: Point3<f64>,
     /// Of the patch; for a loose point the direction to the cameras that saw it.
     pub normal: Vector3<f64>,
@@ -117,11 +117,11 @@ impl Look<'_> {
         self.tile.fetch_triangles(self.list);
     }
 
-    /// The last: the nearest triangle within `gate_m` whose outward normal agrees with the probe's, of which `facing` is told by the grid; of
+    /// The last: the nearest triangle within `gate_m` whose outward normal agrees with the sample point's, of which `facing` is told by the grid; of
     /// equals the first of the model. A gate wider than the grid's reach is cut to it.
     #[inline]
-    pub fn nearest(&self, probe: &Probe, facing: &Facing, gate_m: f64) -> Option<Hit> {
-        self.tile.nearest(self.list, probe, facing, gate_m.min(self.reach_m))
+    pub fn nearest(&self, sample_point: &OrientedPoint, facing: &Facing, gate_m: f64) -> Option<Hit> {
+        self.tile.nearest(self.list, sample_point, facing, gate_m.min(self.reach_m))
     }
 }
 
@@ -188,7 +188,12 @@ impl FacetGrid {
 
     /// Where to look near a place.
     #[inline]
-    pub(super) fn look(&self, place: &Point3<f64>, surface: &CitySurface, exposure: &Exposure) -> Option<Look<'_>> {
+    pub(super) fn look(
+        &self,
+        place: &Point3<f64>,
+        surface: &CitySurface,
+        exposure: &FacetVisibility,
+    ) -> Option<Look<'_>> {
         let d = (place - self.low) * self.cells_per_m;
         if !(d.x >= 0.0 && d.y >= 0.0 && d.z >= 0.0) {
             return None;
@@ -210,7 +215,7 @@ impl FacetGrid {
         self.directions.facing(direction, min_cos, sided)
     }
 
-    fn fill(&self, at: usize, surface: &CitySurface, exposure: &Exposure) -> Tile {
+    fn fill(&self, at: usize, surface: &CitySurface, exposure: &FacetVisibility) -> Tile {
         let [x, y, z] = [at % self.tiles[0], at / self.tiles[0] % self.tiles[1], at / self.tiles[0] / self.tiles[1]];
         let low = self.low + Vector3::new(x as f64, y as f64, z as f64) * (self.cell_m * TILE as f64);
         let near = &self.near[self.starts[at] as usize..self.starts[at + 1] as usize];
@@ -249,18 +254,23 @@ mod tests {
         PreparedCity::new(two_walls())
     }
 
-    fn probe(x: f64, y: f64, z: f64, side: f64) -> Probe {
-        Probe { position: Point3::new(x, y, z), normal: Vector3::new(side, 0.0, 0.0), sided: true, min_cos: 0.9 }
+    fn sample_point(x: f64, y: f64, z: f64, side: f64) -> OrientedPoint {
+        OrientedPoint {
+            position: Point3::new(x, y, z),
+            normal: Vector3::new(side, 0.0, 0.0),
+            sided: true,
+            min_cos: 0.9,
+        }
     }
 
     #[test]
     fn finds_the_facet_that_faces_the_same_way_though_another_is_nearer() {
         let city = prepared();
         let grid = city.grid(1.5);
-        let hit = city.nearest(&grid, &probe(-0.3, 5.0, 3.0, 1.0), 1.0).unwrap();
+        let hit = city.nearest(&grid, &sample_point(-0.3, 5.0, 3.0, 1.0), 1.0).unwrap();
         assert!((hit.across_m + 0.5).abs() < 1e-12 && hit.outside_m == 0.0);
         assert_eq!(hit.normal, Vector3::x());
-        let either = Probe { sided: false, ..probe(-0.3, 5.0, 3.0, 1.0) };
+        let either = OrientedPoint { sided: false, ..sample_point(-0.3, 5.0, 3.0, 1.0) };
         assert_eq!(city.nearest(&grid, &either, 1.0).unwrap().normal, -Vector3::x());
     }
 
@@ -268,11 +278,11 @@ mod tests {
     fn measures_to_the_edge_and_ends_at_the_gate() {
         let city = prepared();
         let grid = city.grid(1.5);
-        let hit = city.nearest(&grid, &probe(0.2, 5.0, 6.7, 1.0), 1.0).unwrap();
+        let hit = city.nearest(&grid, &sample_point(0.2, 5.0, 6.7, 1.0), 1.0).unwrap();
         assert!(hit.across_m.abs() < 1e-12 && (hit.outside_m - 0.7).abs() < 1e-12);
-        assert!(city.nearest(&grid, &probe(0.2, 5.0, 7.2, 1.0), 1.0).is_none());
-        assert!(city.nearest(&grid, &probe(f64::NAN, 5.0, 3.0, 1.0), 1.0).is_none());
-        assert!(city.nearest(&grid, &probe(1e9, 5.0, 3.0, 1.0), 1.0).is_none());
+        assert!(city.nearest(&grid, &sample_point(0.2, 5.0, 7.2, 1.0), 1.0).is_none());
+        assert!(city.nearest(&grid, &sample_point(f64::NAN, 5.0, 3.0, 1.0), 1.0).is_none());
+        assert!(city.nearest(&grid, &sample_point(1e9, 5.0, 3.0, 1.0), 1.0).is_none());
     }
 
     #[test]
@@ -280,13 +290,13 @@ mod tests {
         let city = prepared();
         let grid = city.grid(1.5);
         assert!(std::sync::Arc::ptr_eq(&grid, &city.grid(1.51)) && grid.reach_m() >= 1.51);
-        assert!(city.nearest(&grid, &probe(0.2 + 2.0, 5.0, 3.0, 1.0), 50.0).is_none());
+        assert!(city.nearest(&grid, &sample_point(0.2 + 2.0, 5.0, 3.0, 1.0), 50.0).is_none());
     }
 
     #[test]
     fn an_empty_city_has_no_facet_anywhere() {
         let city = PreparedCity::new(CityModel::default());
-        assert!(city.nearest(&city.grid(1.0), &probe(0.0, 0.0, 0.0, 1.0), 1.0).is_none());
+        assert!(city.nearest(&city.grid(1.0), &sample_point(0.0, 0.0, 0.0, 1.0), 1.0).is_none());
     }
 
     #[test]

@@ -8,8 +8,8 @@
 
 use super::city_planes::PlaneId;
 use super::directions::{Directions, Facing};
-use super::exposure::Exposure;
-use super::facet_grid::{Hit, Probe};
+use super::facet_grid::{Hit, OrientedPoint};
+use super::facet_visibility::FacetVisibility;
 use super::surface::CitySurface;
 use crate::city::FacetId;
 use crate::geometry::{Point3, Vector3};
@@ -114,7 +114,7 @@ const CELL_ROUNDING: f64 = 1e-6;
 
 impl Tile {
     /// `near` are the triangles that may come within reach, in rising order.
-    pub fn new(site: &TileSite, near: &[u32], surface: &CitySurface, exposure: &Exposure) -> Tile {
+    pub fn new(site: &TileSite, near: &[u32], surface: &CitySurface, exposure: &FacetVisibility) -> Tile {
         let width_m = site.cell_m * TILE as f64;
         let middle = site.low + Vector3::repeat(0.5 * width_m);
         let prepared = |&t: &u32| TileTriangle::new(t, &surface.corners(t), surface, surface.facet_of(t));
@@ -154,12 +154,12 @@ impl Tile {
         }
     }
 
-    /// The nearest triangle of a list within `gate_m`, at most the grid's reach, whose outward normal agrees with the probe's; of
+    /// The nearest triangle of a list within `gate_m`, at most the grid's reach, whose outward normal agrees with the sample point's; of
     /// equals the first of the model.
     #[inline]
-    pub fn nearest(&self, List(at): List, probe: &Probe, facing: &Facing, gate_m: f64) -> Option<Hit> {
+    pub fn nearest(&self, List(at): List, sample_point: &OrientedPoint, facing: &Facing, gate_m: f64) -> Option<Hit> {
         let mut at = at as usize;
-        let place = (probe.position - self.middle).map(|x| x as f32);
+        let place = (sample_point.position - self.middle).map(|x| x as f32);
         let (mut best, mut best_sq, mut wide) = (None, gate_m * gate_m, self.widened(gate_m * gate_m));
         loop {
             let (class, count) = Run::of(self.lists[at]);
@@ -174,13 +174,13 @@ impl Tile {
             for &i in &self.lists[run] {
                 let outline = &self.outlines[i as usize];
                 let cos = outline.cos(&facing.normal);
-                let cos = if probe.sided { cos } else { cos.abs() };
+                let cos = if sample_point.sided { cos } else { cos.abs() };
                 // Both are told before either is asked: what cannot be foreseen is asked once.
                 if (outline.distance_sq(&place) > wide) | (cos < facing.least_cos) {
                     continue;
                 }
                 let t = &self.triangles[i as usize];
-                let Some(hit) = t.hit(probe) else { continue };
+                let Some(hit) = t.hit(sample_point) else { continue };
                 let distance_sq = hit.distance_sq();
                 let is_first = best.is_none_or(|(_, triangle)| t.triangle < triangle);
                 if distance_sq < best_sq || best.is_some() && distance_sq == best_sq && is_first {
@@ -217,7 +217,12 @@ struct Stretches {
 
 impl Stretches {
     /// Leaves those of the triangles that come within reach of a cell and can be seen.
-    fn of(site: &TileSite, triangles: &mut Vec<TileTriangle>, surface: &CitySurface, exposure: &Exposure) -> Stretches {
+    fn of(
+        site: &TileSite,
+        triangles: &mut Vec<TileTriangle>,
+        surface: &CitySurface,
+        exposure: &FacetVisibility,
+    ) -> Stretches {
         let mut found: Vec<(u16, Stretch)> = Vec::new();
         let mut kept = 0;
         triangles.retain(|t| {
@@ -397,15 +402,15 @@ impl TileTriangle {
         })
     }
 
-    /// Where a probe meets the triangle; `None` where it faces another way.
+    /// Where a sample point meets the triangle; `None` where it faces another way.
     #[inline]
-    fn hit(&self, probe: &Probe) -> Option<Hit> {
-        let cos = self.normal.dot(&probe.normal);
-        if (if probe.sided { cos } else { cos.abs() }) < probe.min_cos {
+    fn hit(&self, sample_point: &OrientedPoint) -> Option<Hit> {
+        let cos = self.normal.dot(&sample_point.normal);
+        if (if sample_point.sided { cos } else { cos.abs() }) < sample_point.min_cos {
             return None;
         }
-        let across_m = self.normal.dot(&probe.position.coords) + self.offset;
-        Some(Hit { plane: self.plane, normal: self.normal, across_m, outside_m: self.outside(&probe.position) })
+        let across_m = self.normal.dot(&sample_point.position.coords) + self.offset;
+        Some(Hit { plane: self.plane, normal: self.normal, across_m, outside_m: self.outside(&sample_point.position) })
     }
 
     /// How far a point's foot lies outside: exact beside an edge, a little too small beyond a sharp corner.
@@ -458,17 +463,17 @@ mod tests {
     use crate::synthetic::Block;
 
     /// The same by looking at every triangle of the city whose box comes as near as the gate or, where `is_beyond`, does not.
-    fn slowly(city: &PreparedCity, probe: &Probe, gate_m: f64, is_beyond: bool) -> Option<Hit> {
+    fn slowly(city: &PreparedCity, sample_point: &OrientedPoint, gate_m: f64, is_beyond: bool) -> Option<Hit> {
         let mut best: Option<Hit> = None;
         for t in (0..city.model.triangles.len() as u32).filter(|t| city.is_exposed(*t)) {
             let corners = city.corners(t);
             let [a, b, c] = &corners;
-            let (low, high, p) = (a.inf(b).inf(c), a.sup(b).sup(c), &probe.position);
+            let (low, high, p) = (a.inf(b).inf(c), a.sup(b).sup(c), &sample_point.position);
             if (0..3).all(|k| p[k] > low[k] - gate_m && p[k] < high[k] + gate_m) == is_beyond {
                 continue;
             }
             let triangle = TileTriangle::new(t, &corners, city, city.facet_of(t)).unwrap();
-            let Some(hit) = triangle.hit(probe) else { continue };
+            let Some(hit) = triangle.hit(sample_point) else { continue };
             if hit.distance_sq() < best.as_ref().map_or(gate_m * gate_m, Hit::distance_sq) {
                 best = Some(hit);
             }
@@ -490,16 +495,20 @@ mod tests {
                 let off = Vector3::from_fn(|_, _| random.unit() - 0.5);
                 let normal = (normals[random.below(normals.len())] + 0.6 * off).normalize();
                 let (sided, min_cos) = (random.unit() < 0.5, [0.95, 0.9063, 0.12][random.below(3)]);
-                let probe = Probe { position, normal, sided, min_cos };
+                let sample_point = OrientedPoint { position, normal, sided, min_cos };
                 let gate_m = reach_m * random.unit();
                 let told = |hit: &Option<Hit>| {
                     hit.map(|h| (h.distance_sq().to_bits(), h.plane, h.across_m.to_bits(), h.outside_m.to_bits()))
                 };
-                let fast = city.nearest(&grid, &probe, gate_m);
+                let fast = city.nearest(&grid, &sample_point, gate_m);
                 // Beyond a sharp corner a triangle seems nearer than it is.
-                let is_seeming = told(&fast) != told(&slowly(&city, &probe, gate_m, false));
+                let is_seeming = told(&fast) != told(&slowly(&city, &sample_point, gate_m, false));
                 if is_seeming {
-                    assert_eq!(told(&fast), told(&slowly(&city, &probe, gate_m, true)), "{probe:?} {gate_m}");
+                    assert_eq!(
+                        told(&fast),
+                        told(&slowly(&city, &sample_point, gate_m, true)),
+                        "{sample_point:?} {gate_m}"
+                    );
                 }
                 beyond += usize::from(is_seeming);
                 found += usize::from(fast.is_some());

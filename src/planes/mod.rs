@@ -3,7 +3,7 @@
 mod city_planes;
 mod cloud;
 mod directions;
-mod exposure;
+mod facet_visibility;
 mod facet_grid;
 mod facet_tile;
 mod fit;
@@ -15,7 +15,7 @@ mod upright;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
 pub use directions::Facing;
-pub use facet_grid::{FacetGrid, Hit, Look, Probe};
+pub use facet_grid::{FacetGrid, Hit, Look, OrientedPoint};
 pub use fit::{FittedPlane, fit_plane_robustly};
 pub use patches::{Patches, patches};
 pub use prepared_city::PreparedCity;

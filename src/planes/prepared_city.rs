@@ -9,17 +9,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rayon::prelude::*;
 
 use super::city_planes::PlaneId;
-use super::exposure::Exposure;
-use super::facet_grid::{FacetGrid, Hit, Look, Probe};
+use super::facet_grid::{FacetGrid, Hit, Look, OrientedPoint};
+use super::facet_visibility::FacetVisibility;
 use super::surface::CitySurface;
 use crate::city::{CityModel, FacetId};
 use crate::geometry::Point3;
-use crate::limits::{ExposureLimits, Limits};
+use crate::limits::{FacetVisibilityLimits, Limits};
 
 /// A city model with all that alignments ask of it; read it as the surface that it is.
 pub struct PreparedCity {
     surface: CitySurface,
-    exposure: Exposure,
+    exposure: FacetVisibility,
     /// One for each reach that was asked for.
     grids: Mutex<Vec<Arc<FacetGrid>>>,
 }
@@ -33,9 +33,9 @@ impl PreparedCity {
         PreparedCity::with_limits(model, &Limits::default().exposure)
     }
 
-    pub fn with_limits(model: CityModel, limits: &ExposureLimits) -> PreparedCity {
+    pub fn with_limits(model: CityModel, limits: &FacetVisibilityLimits) -> PreparedCity {
         let surface = CitySurface::new(model);
-        PreparedCity { exposure: Exposure::new(&surface, limits), surface, grids: Mutex::new(Vec::new()) }
+        PreparedCity { exposure: FacetVisibility::new(&surface, limits), surface, grids: Mutex::new(Vec::new()) }
     }
 
     /// Whether somebody could have seen a triangle from the open.
@@ -59,13 +59,13 @@ impl PreparedCity {
         (0..planes.len() as u32).into_par_iter().filter(in_sight).map(PlaneId).collect()
     }
 
-    /// The facet that a probe lies on, by a grid of this city.
+    /// The facet that a sample point lies on, by a grid of this city.
     #[inline]
-    pub fn nearest(&self, grid: &FacetGrid, probe: &Probe, gate_m: f64) -> Option<Hit> {
-        let facing = grid.facing(&probe.normal, probe.min_cos, probe.sided);
-        let mut look = self.look(grid, &probe.position)?;
+    pub fn nearest(&self, grid: &FacetGrid, sample_point: &OrientedPoint, gate_m: f64) -> Option<Hit> {
+        let facing = grid.facing(&sample_point.normal, sample_point.min_cos, sample_point.sided);
+        let mut look = self.look(grid, &sample_point.position)?;
         look.find_list();
-        look.nearest(probe, &facing, gate_m)
+        look.nearest(sample_point, &facing, gate_m)
     }
 
     /// Where to look in a grid of this city; `None` beyond it.

@@ -13,8 +13,8 @@ use crate::geometry::{Matrix3, Rotation3, Vector3};
 use crate::limits::{UpHabits, UpLimits};
 
 /// One kind of voters.
-pub struct UpVotes {
-    voters: Vec<Voter>,
+pub struct UpSupport {
+    voters: Vec<UpObservation>,
     /// Add up to 1.
     weights: Vec<f64>,
     /// How many voters of its own direction each has, itself included.
@@ -28,7 +28,7 @@ const MOST_VOTERS: usize = 500;
 /// Two directions are alike by the cosine to this power: a half at 15 degrees.
 const LIKENESS_POWER: i32 = 20;
 
-enum Voter {
+enum UpObservation {
     Patch {
         normal: Vector3<f64>,
         sided: bool,
@@ -43,32 +43,32 @@ enum Asks {
     Along(Vector3<f64>),
 }
 
-impl UpVotes {
+impl UpSupport {
     /// Walls and floors.
-    pub fn of_patches(patches: &Patches, limits: &UpLimits) -> UpVotes {
+    pub fn of_patches(patches: &Patches, limits: &UpLimits) -> UpSupport {
         let mut heaviest: Vec<&Patch> = patches.patches.iter().collect();
         heaviest.sort_by_key(|p| std::cmp::Reverse(p.members.len()));
         heaviest.truncate(MOST_VOTERS);
-        let voter = |p: &&Patch| Voter::Patch { normal: p.fit.plane.normal, sided: p.sided };
+        let voter = |p: &&Patch| UpObservation::Patch { normal: p.fit.plane.normal, sided: p.sided };
         let weights = heaviest.iter().map(|p| (p.members.len() as f64).sqrt()).collect();
-        UpVotes::new(heaviest.iter().map(voter).collect(), weights, limits.patches, limits)
+        UpSupport::new(heaviest.iter().map(voter).collect(), weights, limits.patches, limits)
     }
 
     /// Cameras by their horizontal axes.
-    pub fn of_cameras(cam_from_sfm: &[Rotation3<f64>], limits: &UpLimits) -> UpVotes {
+    pub fn of_cameras(cam_from_sfm: &[Rotation3<f64>], limits: &UpLimits) -> UpSupport {
         let axis = |r: &Rotation3<f64>, k: usize| r.matrix().row(k).transpose();
-        let voter = |r: &Rotation3<f64>| Voter::Camera([0, 1, 2].map(|k| axis(r, k)));
+        let voter = |r: &Rotation3<f64>| UpObservation::Camera([0, 1, 2].map(|k| axis(r, k)));
         let step = cam_from_sfm.len().div_ceil(MOST_VOTERS).max(1);
-        let voters: Vec<Voter> = cam_from_sfm.iter().step_by(step).map(voter).collect();
+        let voters: Vec<UpObservation> = cam_from_sfm.iter().step_by(step).map(voter).collect();
         let weights = vec![1.0; voters.len()];
-        UpVotes::new(voters, weights, limits.cameras, limits)
+        UpSupport::new(voters, weights, limits.cameras, limits)
     }
 
-    fn new(voters: Vec<Voter>, mut weights: Vec<f64>, habits: UpHabits, limits: &UpLimits) -> UpVotes {
+    fn new(voters: Vec<UpObservation>, mut weights: Vec<f64>, habits: UpHabits, limits: &UpLimits) -> UpSupport {
         let total: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|w| *w /= total);
         let fellows = voters.iter().map(|a| voters.iter().map(|b| a.likeness(b)).sum::<f64>().max(1.0)).collect();
-        UpVotes { voters, weights, fellows, habits, limits: *limits }
+        UpSupport { voters, weights, fellows, habits, limits: *limits }
     }
 
     /// Share of the voters for `up`, 0 to 1.
@@ -113,11 +113,11 @@ impl UpVotes {
     }
 }
 
-impl Voter {
+impl UpObservation {
     /// What it asks of an up near this one, and how much it counts; `None` where it cannot be for it at all.
     fn asks(&self, up: &Vector3<f64>, limits: &UpLimits) -> Option<(Asks, f64)> {
         match self {
-            Voter::Patch { normal, sided } => {
+            UpObservation::Patch { normal, sided } => {
                 let along = normal.dot(up);
                 if along.abs() < FRAC_1_SQRT_2 {
                     return Some((Asks::Across(*normal), 1.0));
@@ -125,8 +125,8 @@ impl Voter {
                 // Nobody photographs a floor from below.
                 (!sided || along > 0.0).then_some((Asks::Along(*normal), 1.0))
             }
-            Voter::Camera([_, _, forward]) if forward.dot(up) > limits.steepest_view => None,
-            Voter::Camera([right, down, _]) => {
+            UpObservation::Camera([_, _, forward]) if forward.dot(up) > limits.steepest_view => None,
+            UpObservation::Camera([right, down, _]) => {
                 let is_turned = down.dot(up) > limits.upside_down || right.dot(up).abs() > FRAC_1_SQRT_2;
                 Some(if is_turned { (Asks::Across(*down), limits.quarter_turned) } else { (Asks::Across(*right), 1.0) })
             }
@@ -134,10 +134,12 @@ impl Voter {
     }
 
     /// How nearly two voters have the same direction, 0 to 1.
-    fn likeness(&self, other: &Voter) -> f64 {
+    fn likeness(&self, other: &UpObservation) -> f64 {
         let cos = match (self, other) {
-            (Voter::Patch { normal: a, .. }, Voter::Patch { normal: b, .. }) => a.dot(b).abs(),
-            (Voter::Camera([r1, d1, _]), Voter::Camera([r2, d2, _])) => r1.dot(r2).abs().min(d1.dot(d2).abs()),
+            (UpObservation::Patch { normal: a, .. }, UpObservation::Patch { normal: b, .. }) => a.dot(b).abs(),
+            (UpObservation::Camera([r1, d1, _]), UpObservation::Camera([r2, d2, _])) => {
+                r1.dot(r2).abs().min(d1.dot(d2).abs())
+            }
             _ => 0.0,
         };
         cos.powi(LIKENESS_POWER)

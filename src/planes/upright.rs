@@ -17,7 +17,7 @@ use std::f64::consts::{PI, TAU};
 use rayon::prelude::*;
 
 use super::patches::Patches;
-use super::up_votes::UpVotes;
+use super::up_votes::UpSupport;
 use crate::geometry::{Matrix3, Vector3};
 use crate::limits::Limits;
 
@@ -91,8 +91,8 @@ pub fn up_beyond_start(patches: &Patches, start: &Upright, limits: &Limits) -> O
 /// The directions that walls, floors, cameras and start together allow, the best supported first.
 pub fn up_candidates(patches: &Patches, start: &Upright, limits: &Limits) -> Vec<UpCandidate> {
     let evidence = Evidence {
-        patches: UpVotes::of_patches(patches, &limits.up),
-        cameras: UpVotes::of_cameras(&patches.cam_from_sfm_rotations, &limits.up),
+        patches: UpSupport::of_patches(patches, &limits.up),
+        cameras: UpSupport::of_cameras(&patches.cam_from_sfm_rotations, &limits.up),
         start: Upright { sigma_rad: start.sigma_rad.max(SMALLEST_SIGMA_RAD), ..*start },
         limits: *limits,
     };
@@ -118,8 +118,8 @@ pub fn up_candidates(patches: &Patches, start: &Upright, limits: &Limits) -> Vec
 }
 
 struct Evidence {
-    patches: UpVotes,
-    cameras: UpVotes,
+    patches: UpSupport,
+    cameras: UpSupport,
     start: Upright,
     limits: Limits,
 }

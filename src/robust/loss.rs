@@ -8,9 +8,9 @@ pub fn tukey_weight(residual_sq: f64, width: f64) -> f64 {
     if rest > 0.0 { rest * rest } else { 0.0 }
 }
 
-/// The share of a vote that a residual leaves: `1 - r^2 / c^2`, at least 0 (truncated square).
+/// What a residual adds to an inlier share: `1 - r^2 / c^2`, at least 0. Source: the truncated quadratic of MSAC (Torr and Zisserman 2000).
 #[inline]
-pub fn vote(residual_sq: f64, width: f64) -> f64 {
+pub fn truncated_quadratic(residual_sq: f64, width: f64) -> f64 {
     (1.0 - residual_sq / (width * width)).max(0.0)
 }
 
@@ -24,7 +24,7 @@ mod tests {
         assert_eq!(tukey_weight(1.0, 2.0), 0.5625);
         assert_eq!(tukey_weight(4.0, 2.0), 0.0);
         assert_eq!(tukey_weight(9.0, 2.0), 0.0);
-        assert_eq!(vote(1.0, 2.0), 0.75);
-        assert_eq!(vote(5.0, 2.0), 0.0);
+        assert_eq!(truncated_quadratic(1.0, 2.0), 0.75);
+        assert_eq!(truncated_quadratic(5.0, 2.0), 0.0);
     }
 }

@@ -9,7 +9,7 @@ mod ransac;
 
 pub use chi_square::chi_square_beyond;
 pub use gauss_newton::{Chart, Direction, Matrix7, Motion, NormalEquations, Spectrum, Vector7};
-pub use loss::{tukey_weight, vote};
+pub use loss::{truncated_quadratic, tukey_weight};
 pub use quantile::{median, quantile};
 pub use random::Random;
 pub use ransac::{Problem, Ranked, RansacOptions, ransac};

@@ -32,7 +32,7 @@ const BAND: [[f64; 2]; 7] = [
     [1.237, 14.449],
     [1.690, 16.013],
 ];
-/// ... and half of them.
+/// Median of chi-square, by freedoms.
 const MEDIAN: [f64; 7] = [0.455, 1.386, 2.366, 3.357, 4.351, 5.348, 6.346];
 
 /// What a verdict turned out to be worth.

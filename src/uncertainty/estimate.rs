@@ -4,7 +4,7 @@
 //!              the reconstruction's bending (26 smooth fields); for each building a shift and a turn; for each front an offset and two tilts
 //! Method       least squares with a prior on every unknown but the pose. The spreads of buildings, fronts, pieces and bending are estimated
 //!              together with the unknowns (expectation and maximisation, which counts what is not known of an unknown: restricted
-//!              maximum likelihood), each with a prior worth a few observations. Buildings, fronts and pieces have heavy tails
+//!              maximum likelihood), each with a prior worth a few observations. Buildings, fronts and pieces have heavy tails (Student's t)
 //!              (Student's t): a rebuilt house, a front that is another's, a piece with a tree before it are outliers as wholes.
 //!              Points are put on facets anew after each round
 //! Fails when   the pose is in another basin: then it is exactly wrong
@@ -14,10 +14,10 @@ use rayon::prelude::*;
 
 use super::bending::Bending;
 use super::elimination::{Eliminated, eliminate, inverse};
-use super::findings::Findings;
+use super::findings::SystematicErrors;
 use super::leave_out;
-use super::sample::{KINDS, Sample, sample};
-use crate::correspondence::Refiner;
+use super::observations::{KINDS, Observations, sample};
+use crate::correspondence::PoseRefiner;
 use crate::geometry::{Point3, Similarity};
 use crate::limits::UncertaintyLimits;
 use crate::robust::{Chart, Matrix7, Motion, NormalEquations, Vector7};
@@ -31,12 +31,12 @@ pub struct Estimate {
     pub information: Matrix7,
     /// The same without each of the fronts in turn.
     pub without: Vec<Matrix7>,
-    pub findings: Findings,
+    pub findings: SystematicErrors,
 }
 
 /// Unknowns of the pose.
 pub(super) const POSE: usize = 7;
-/// ... and the two that are common to the whole model: walls, lids.
+/// Unknowns that are common to the pose and the whole model: seven of the pose, one of walls, one of lids.
 pub(super) const WALLS: usize = POSE;
 pub(super) const LIDS: usize = POSE + 1;
 pub(super) const COMMON: usize = POSE + 2;
@@ -47,7 +47,7 @@ const OF_FRONT: usize = 3;
 
 /// Standard deviations, squared, m^2.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spreads {
+pub(super) struct Variances {
     /// By kind.
     pub building: [f64; KINDS],
     pub front: [f64; KINDS],
@@ -57,22 +57,22 @@ pub(super) struct Spreads {
 }
 
 /// The estimate near a pose.
-pub fn estimate(refiner: &Refiner, pose: &Similarity) -> Estimate {
+pub fn estimate(refiner: &PoseRefiner, pose: &Similarity) -> Estimate {
     let scene = refiner.scene;
     let limits = &scene.limits.uncertainty;
     let mut pose = *pose;
     for _ in 0..limits.rounds {
         let chart = refiner.assess(&[], &pose, 0.0).chart;
-        let sample = sample(refiner, &pose, limits.gate_units * scene.unit_m);
+        let sample = sample(refiner, &pose, limits.gate_units * scene.gate_unit_m);
         let system = System::settled(refiner, &pose, &chart, &sample);
-        let moved = chart.moved(&pose, &chart.step(&system.held(), scene.limits.refinement.held_m));
+        let moved = chart.moved(&pose, &chart.step(&system.held(), scene.limits.refinement.most_sigma_m));
         if !moved.translation.iter().all(|v| v.is_finite()) || !scene.prior.reaches(&moved) {
             break;
         }
         pose = moved;
     }
     let chart = refiner.assess(&[], &pose, 0.0).chart;
-    let sample = sample(refiner, &pose, limits.gate_units * scene.unit_m);
+    let sample = sample(refiner, &pose, limits.gate_units * scene.gate_unit_m);
     let mut system = System::settled(refiner, &pose, &chart, &sample);
     system.take_tails_in();
     let left_out = leave_out::by_building(&system);
@@ -81,13 +81,13 @@ pub fn estimate(refiner: &Refiner, pose: &Similarity) -> Estimate {
         chart,
         information: left_out.widened(&system.held().full()),
         without: leave_out::by_front(&system).iter().map(|m| left_out.widened(m)).collect(),
-        findings: Findings::of(&system),
+        findings: SystematicErrors::of(&system),
     }
 }
 
 /// Normal equations by building and front, with the spreads and weights that make them.
 pub(super) struct System<'a> {
-    pub sample: &'a Sample,
+    pub sample: &'a Observations,
     pub limits: &'a UncertaintyLimits,
     pub radius_m: f64,
     /// One row a piece: unknowns common to all, distance, building, front.
@@ -96,18 +96,18 @@ pub(super) struct System<'a> {
     pub common: usize,
     /// What is known of these beforehand; the start for the pose.
     start: DMatrix<f64>,
-    pub spreads: Spreads,
+    pub spreads: Variances,
     building_weights: Vec<f64>,
     front_weights: Vec<f64>,
     piece_weights: Vec<f64>,
-    pub parts: Vec<Part>,
+    pub parts: Vec<BuildingSystem>,
     /// The unknowns common to all, and their covariance.
     pub found: DVector<f64>,
     pub covariance: DMatrix<f64>,
 }
 
 /// One building's share.
-pub(super) struct Part {
+pub(super) struct BuildingSystem {
     /// Of all its fronts, before the building's own unknowns are taken out: common, distance, building.
     pub whole: DMatrix<f64>,
     pub building: Eliminated,
@@ -117,7 +117,7 @@ pub(super) struct Part {
 
 impl<'a> System<'a> {
     fn new(
-        sample: &'a Sample,
+        sample: &'a Observations,
         chart: &Chart,
         places: &[Point3<f64>],
         start: &Matrix7,
@@ -128,7 +128,7 @@ impl<'a> System<'a> {
         let mut known = DMatrix::zeros(common, common);
         known.view_mut((0, 0), (POSE, POSE)).copy_from(start);
         let of_spread = |sigma: f64| sigma * sigma;
-        let first = Spreads {
+        let first = Variances {
             building: [of_spread(limits.building_sigma_m); KINDS],
             front: [of_spread(limits.front_sigma_m); KINDS],
             piece: of_spread(limits.piece_sigma_m),
@@ -152,9 +152,10 @@ impl<'a> System<'a> {
     }
 
     /// With unknowns and spreads estimated in turn.
-    fn settled(refiner: &Refiner<'a>, pose: &Similarity, chart: &Chart, sample: &'a Sample) -> System<'a> {
+    fn settled(refiner: &PoseRefiner<'a>, pose: &Similarity, chart: &Chart, sample: &'a Observations) -> System<'a> {
         let scene = refiner.scene;
-        let places: Vec<Point3<f64>> = scene.votes.probes.iter().map(|probe| pose.apply(&probe.position)).collect();
+        let places: Vec<Point3<f64>> =
+            scene.level_cloud.sample_points.iter().map(|sample_point| pose.apply(&sample_point.position)).collect();
         let mut system =
             System::new(sample, chart, &places, &scene.prior.information(chart), &scene.limits.uncertainty);
         for _ in 0..system.limits.steps {
@@ -167,11 +168,12 @@ impl<'a> System<'a> {
 
     /// Takes for a spread what Student's t scatters by, its tails included: more than its core by nu / (nu - 2).
     fn take_tails_in(&mut self) {
-        let tails = self.limits.tails;
-        let times = tails / (tails - 2.0);
-        let Spreads { building, front, piece, bending } = self.spreads;
+        let student_dof = self.limits.student_dof;
+        let times = student_dof / (student_dof - 2.0);
+        let Variances { building, front, piece, bending } = self.spreads;
         let wider = |spread: f64| spread * times;
-        self.spreads = Spreads { building: building.map(wider), front: front.map(wider), piece: wider(piece), bending };
+        self.spreads =
+            Variances { building: building.map(wider), front: front.map(wider), piece: wider(piece), bending };
         self.solve();
     }
 
@@ -183,7 +185,7 @@ impl<'a> System<'a> {
         self.found = -(&self.covariance * total.view((0, self.common), (self.common, 1)).column(0));
     }
 
-    fn part(&self, building: usize) -> Part {
+    fn part(&self, building: usize) -> BuildingSystem {
         let keep = self.common + 1 + OF_BUILDING;
         let of_building = &self.sample.buildings[building];
         let fronts: Vec<Eliminated> = of_building
@@ -198,7 +200,7 @@ impl<'a> System<'a> {
         fronts.iter().for_each(|front| whole += &front.rest);
         let precision = self.building_weights[building] / self.spreads.building[of_building.kind as usize];
         let building = eliminate(&whole, self.common + 1, precision);
-        Part { whole, building, fronts, precision }
+        BuildingSystem { whole, building, fronts, precision }
     }
 
     fn equations_of_front(&self, front: usize) -> DMatrix<f64> {
@@ -253,7 +255,7 @@ impl<'a> System<'a> {
         (rest.fixed_view::<POSE, POSE>(0, 0).into_owned(), rest.fixed_view::<POSE, 1>(0, POSE).into_owned())
     }
 
-    /// Spreads and weights by what the unknowns turn out to be, and by how well these are known.
+    /// Variances and weights by what the unknowns turn out to be, and by how well these are known.
     fn learn(&mut self) {
         let (limits, sample) = (self.limits, self.sample);
         let of_kind = |count: usize, first_m: f64, worth: f64| Squares {
@@ -267,12 +269,12 @@ impl<'a> System<'a> {
         for (b, of_building) in sample.buildings.iter().enumerate() {
             let (building, covariance, squared) = self.building_found(b);
             let kind = of_building.kind as usize;
-            self.building_weights[b] = weight(squared / self.spreads.building[kind], OF_BUILDING, limits.tails);
+            self.building_weights[b] = weight(squared / self.spreads.building[kind], OF_BUILDING, limits.student_dof);
             of_buildings[kind].add(self.building_weights[b] * squared);
             for (k, front) in of_building.fronts.clone().enumerate() {
                 let (offsets, squared) = self.front_found(b, k, &building, &covariance);
                 let kind = sample.fronts[front].kind as usize;
-                self.front_weights[front] = weight(squared / self.spreads.front[kind], OF_FRONT, limits.tails);
+                self.front_weights[front] = weight(squared / self.spreads.front[kind], OF_FRONT, limits.student_dof);
                 of_fronts[kind].add(self.front_weights[front] * squared);
                 for piece in sample.fronts[front].pieces.clone() {
                     let squared = self.learn_piece(piece, &building, &offsets);
@@ -284,7 +286,7 @@ impl<'a> System<'a> {
         let mut of_bending =
             of_kind(1, limits.bending_share * self.radius_m / (fields.max(1) as f64).sqrt(), limits.bending_worth);
         (COMMON..self.common).for_each(|k| of_bending.add(self.found[k].powi(2) + self.covariance[(k, k)]));
-        self.spreads = Spreads {
+        self.spreads = Variances {
             building: of_buildings.map(|squares| squares.mean()),
             front: of_fronts.map(|squares| squares.mean()),
             piece: of_pieces.mean(),
@@ -333,7 +335,7 @@ impl<'a> System<'a> {
             + row.rows(n + 1, OF_BUILDING).dot(building)
             + row.rows(n + 1 + OF_BUILDING, OF_FRONT).dot(offsets);
         let variance = self.variance_of_piece(piece);
-        self.piece_weights[piece] = weight(off_m * off_m / variance, 1, self.limits.tails);
+        self.piece_weights[piece] = weight(off_m * off_m / variance, 1, self.limits.student_dof);
         let share = self.spreads.piece / variance;
         self.piece_weights[piece] * (share * off_m).powi(2) + self.spreads.piece * (1.0 - share)
     }
@@ -360,11 +362,11 @@ impl Squares {
 }
 
 /// Weight of an unknown of so many parts whose square is so many times its variance, by Student's t.
-fn weight(squared: f64, parts: usize, tails: f64) -> f64 {
-    (tails + parts as f64) / (tails + squared)
+fn weight(squared: f64, parts: usize, student_dof: f64) -> f64 {
+    (student_dof + parts as f64) / (student_dof + squared)
 }
 
-fn rows(sample: &Sample, chart: &Chart, bending: &Bending, common: usize) -> DMatrix<f64> {
+fn rows(sample: &Observations, chart: &Chart, bending: &Bending, common: usize) -> DMatrix<f64> {
     let mut rows = DMatrix::zeros(common + 1 + OF_BUILDING + OF_FRONT, sample.pieces.len());
     for building in &sample.buildings {
         for front in &sample.fronts[building.fronts.clone()] {
@@ -411,7 +413,7 @@ mod tests {
 
     fn found(made: &Made) -> (Estimate, Scene<'_>) {
         let scene = made.scene(&Offset::default(), Motion::Similarity);
-        let estimate = estimate(&Refiner::new(&scene), &made.truth(&scene));
+        let estimate = estimate(&PoseRefiner::new(&scene), &made.truth(&scene));
         (estimate, scene)
     }
 
@@ -539,7 +541,7 @@ mod tests {
     fn a_given_scale_is_kept_to_the_bit_and_nothing_is_said_to_hold_it() {
         let made = Made::cloud(town(), &seen());
         let scene = made.scene(&Offset::default(), Motion::Rigid);
-        let estimate = estimate(&Refiner::new(&scene), &scene.prior.expected());
+        let estimate = estimate(&PoseRefiner::new(&scene), &scene.prior.expected());
         assert_eq!(estimate.city_from_level.scale.to_bits(), 1f64.to_bits());
         assert!(estimate.information.column(6).norm() < 1e-6, "{}", estimate.information);
     }
@@ -548,9 +550,9 @@ mod tests {
     fn the_information_is_that_of_least_squares_with_the_dense_covariance() {
         let made = Made::four_houses();
         let scene = made.scene(&Offset::default(), Motion::Similarity);
-        let (refiner, pose) = (Refiner::new(&scene), made.truth(&scene));
+        let (refiner, pose) = (PoseRefiner::new(&scene), made.truth(&scene));
         let chart = refiner.assess(&[], &pose, 0.0).chart;
-        let sample = sample(&refiner, &pose, scene.unit_m);
+        let sample = sample(&refiner, &pose, scene.gate_unit_m);
         let system = System::settled(&refiner, &pose, &chart, &sample);
         let (n, count) = (system.common, sample.pieces.len());
         let mut covariance = DMatrix::zeros(count, count);

@@ -1,12 +1,12 @@
 //! What the unknowns beside the pose turned out to be, and what of it is worth telling.
 
 use super::estimate::{COMMON, LIDS, System, WALLS};
-use super::sample::Kind;
+use super::observations::Kind;
 use crate::limits::UncertaintyLimits;
 
 /// Errors of the model and of the reconstruction, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Findings {
+pub struct SystematicErrors {
     /// How far walls stand inside the model's, and one sigma of that.
     pub walls_inset_m: f64,
     pub walls_inset_sigma_m: f64,
@@ -21,11 +21,11 @@ pub struct Findings {
     pub bending_m: f64,
 }
 
-impl Findings {
-    pub(super) fn of(system: &System) -> Findings {
+impl SystematicErrors {
+    pub(super) fn of(system: &System) -> SystematicErrors {
         let sigma_m = |k: usize| system.covariance[(k, k)].sqrt();
         let bends_m = (COMMON..system.common).map(|k| system.found[k].powi(2)).sum::<f64>().sqrt();
-        Findings {
+        SystematicErrors {
             // The cloud lies before a surface where its distance is positive, and what is added makes it zero.
             walls_inset_m: system.found[WALLS],
             walls_inset_sigma_m: sigma_m(WALLS),
@@ -39,8 +39,9 @@ impl Findings {
 
     /// In words, what chance does not explain and a user would want to know.
     pub fn worth_telling(&self, limits: &UncertaintyLimits) -> Vec<String> {
-        let shows =
-            |value_m: f64, sigma_m: f64| value_m.abs() > limits.told_sigmas * sigma_m && value_m.abs() > limits.told_m;
+        let shows = |value_m: f64, sigma_m: f64| {
+            value_m.abs() > limits.reported_sigmas * sigma_m && value_m.abs() > limits.reported_m
+        };
         let mut told = Vec::new();
         if shows(self.walls_inset_m, self.walls_inset_sigma_m) {
             let (by_m, side) = (self.walls_inset_m.abs(), if self.walls_inset_m > 0.0 { "inside" } else { "outside" });
@@ -56,7 +57,7 @@ impl Findings {
                 self.tops_lower_sigma_m
             ));
         }
-        if self.bending_m > limits.told_m {
+        if self.bending_m > limits.reported_m {
             told.push(format!(
                 "the reconstruction bends by {:.2} m (root mean square), which no similarity undoes: single places may be off by more than \
                  the sigmas of the pose say",
@@ -75,8 +76,8 @@ fn bending_shows(system: &System) -> bool {
     let fields: Vec<usize> = (COMMON..system.common).filter(|&k| told(k) > LEAST_TOLD).collect();
     let squares: f64 = fields.iter().map(|&k| system.found[k].powi(2) / (system.covariance[(k, k)] * told(k))).sum();
     let count = fields.len() as f64;
-    squares > count + system.limits.told_sigmas * (2.0 * count).sqrt()
+    squares > count + system.limits.reported_sigmas * (2.0 * count).sqrt()
 }
 
-/// A field of which the data tell less than this share is no witness.
+/// A field of which the data tell less than this share says nothing of the bending.
 const LEAST_TOLD: f64 = 0.1;

@@ -14,7 +14,7 @@ mod elimination;
 mod estimate;
 mod findings;
 mod leave_out;
-mod sample;
+mod observations;
 
 pub use estimate::{Estimate, estimate};
-pub use findings::Findings;
+pub use findings::SystematicErrors;

@@ -1,9 +1,9 @@
 //! Which of the seven freedoms the data fix, and how firmly.
 //!
 //! Input        the information that the data hold on the pose with all that errs together in model and reconstruction, the same without each
-//!              of its witnesses, and that of the start
+//!              front of a building, and that of the start
 //! Method       eigenvectors of the information are the freedoms; a freedom is determined when the data alone hold it to within the accuracy
-//!              that is asked for, and, no matter which witness is left out, to within a multiple of it. Its sigma includes the
+//!              that is asked for, and, no matter which front is left out, to within a multiple of it. Its sigma includes the
 //!              start, so that it is finite
 //! Source       mathematics of the normalised Jacobian: Gelfand et al. (3DIM 2003) for the slippable motions of a surface
 
@@ -14,11 +14,11 @@ use crate::robust::{Chart, Matrix7, Motion, Vector7};
 
 /// What holds a pose.
 #[derive(Clone, Debug)]
-pub struct Hold {
+pub struct PoseInformation {
     pub chart: Chart,
     /// Information of the data, 1 / m^2 in the chart's unknowns.
     pub information: Matrix7,
-    /// The same without each witness in turn.
+    /// The same without each front of a building in turn.
     pub without: Vec<Matrix7>,
     /// Information of what is known beforehand.
     pub prior: Matrix7,
@@ -26,7 +26,7 @@ pub struct Hold {
     pub given_scale: Option<GivenScale>,
     /// What a freedom must be held to, metres at the chart's radius.
     pub accuracy_m: f64,
-    /// ... and how many times that without any one witness.
+    /// How many times `accuracy_m` a freedom may be off without any one front of a building.
     pub confirmed_times: f64,
 }
 
@@ -45,7 +45,7 @@ pub struct GivenScale {
 
 /// A freedom in numbers.
 #[derive(Clone, Debug)]
-pub struct HeldDirection {
+pub struct DirectionEstimate {
     /// Over (rotation, translation, log scale), each times the radius.
     pub unit: Vector7,
     /// With what is known beforehand, metres at the radius.
@@ -66,7 +66,7 @@ impl GivenScale {
     }
 }
 
-impl Hold {
+impl PoseInformation {
     /// Whether the data tell a scale, and it is the given one.
     pub fn agrees_with_given_scale(&self, limits: &VerdictLimits) -> bool {
         let agrees = |s: GivenScale| s.bits >= limits.margin_bits() && !s.is_contradicted(self.chart.radius, limits);
@@ -74,7 +74,7 @@ impl Hold {
     }
 
     /// The freedoms that are not given, the loosest first.
-    pub fn directions(&self) -> Vec<HeldDirection> {
+    pub fn directions(&self) -> Vec<DirectionEstimate> {
         let spectrum = self.chart.spectrum(&self.information);
         let all = self.with_prior(&self.information);
         let without: Vec<Posterior> = self.without.iter().map(|information| self.with_prior(information)).collect();
@@ -85,7 +85,7 @@ impl Hold {
                 along(information, &d.unit) * most_m * most_m >= 1.0 && posterior.sigma_along(&d.unit) <= most_m
             };
             let mut left_out = self.without.iter().zip(&without);
-            HeldDirection {
+            DirectionEstimate {
                 unit: d.unit,
                 sigma_m: all.sigma_along(&d.unit),
                 determined: of_data * self.accuracy_m * self.accuracy_m >= 1.0
@@ -139,9 +139,9 @@ fn along(matrix: &Matrix7, unit: &Vector7) -> f64 {
 }
 
 /// The freedoms in words, the loosest first; a given scale that is held stands at the end.
-pub fn freedoms(hold: &Hold, limits: &VerdictLimits) -> Vec<Freedom> {
+pub fn freedoms(hold: &PoseInformation, limits: &VerdictLimits) -> Vec<Freedom> {
     let r = hold.chart.radius;
-    let in_words = |d: HeldDirection| {
+    let in_words = |d: DirectionEstimate| {
         let part = |first: usize| Vector3::new(d.unit[first], d.unit[first + 1], d.unit[first + 2]);
         let (turn, shift, scale) = (part(0), part(3), d.unit[6]);
         let largest = turn.norm().max(shift.norm()).max(scale.abs());

@@ -16,7 +16,7 @@
 //! Differences along freedoms that nothing holds do not count. Beyond three sigmas the start rules a pose out unless that explains
 //! more: a start may be wrong, but where two poses explain the same (the halves of a symmetric block), only the start can tell.
 
-use super::freedoms::{GivenScale, HeldDirection, Hold};
+use super::freedoms::{DirectionEstimate, GivenScale, PoseInformation};
 use super::{Alternative, Certainty, Verdict, freedoms, words};
 use crate::geometry::Similarity;
 use crate::limits::VerdictLimits;
@@ -29,7 +29,7 @@ pub struct Rival {
     /// How much likelier is what the cloud meets under this pose than by chance, bits.
     pub bits: f64,
     /// What the start says of it against the expected pose, bits: none or less.
-    pub bits_of_start: f64,
+    pub prior_bits: f64,
     /// Whether it lies beyond the start's reach.
     pub beyond_start: bool,
     /// Whether it was fitted by chance, and is none of those among which the search chose.
@@ -38,14 +38,14 @@ pub struct Rival {
 
 impl Rival {
     /// With what the start says, bits.
-    pub fn all_bits(&self) -> f64 {
-        self.bits + self.bits_of_start
+    pub fn posterior_bits(&self) -> f64 {
+        self.bits + self.prior_bits
     }
 }
 
 /// The verdict and what it rests on.
 #[derive(Clone, Debug)]
-pub struct Ruling {
+pub struct Decision {
     pub verdict: Verdict,
     pub reason: String,
     pub alternatives: Vec<Alternative>,
@@ -60,7 +60,7 @@ pub struct Evidence {
     /// The best within the start's reach first.
     pub rivals: Vec<Rival>,
     /// What holds the best of them.
-    pub hold: Hold,
+    pub hold: PoseInformation,
     /// Planes in space that could speak, and those that speak for the best pose.
     pub witnesses: usize,
     pub speaking: usize,
@@ -73,10 +73,10 @@ pub struct Evidence {
 const WORTH_TELLING_BITS: f64 = 20.0;
 
 /// Judges the best of the rivals by the hold that the data have on it.
-pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
+pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Decision {
     let Evidence { rivals, hold, .. } = evidence;
     let Some(best) = rivals.first() else {
-        return Ruling {
+        return Decision {
             verdict: Verdict::Failed,
             reason: "no pose within three sigmas of the start lays the points on facets of the city; check the start, its scale and \
                      that the city covers this place"
@@ -107,17 +107,27 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Ruling {
     } else {
         (Verdict::Aligned, aligned_reason(best, &others, &certainty, hold, limits))
     };
-    Ruling { verdict, reason, alternatives, certainty, scale_is_denied: denied.is_some() }
+    Decision { verdict, reason, alternatives, certainty, scale_is_denied: denied.is_some() }
 }
 
 /// Whether the evidence leaves room for a rival: within the start's reach where the lead over it is less than chance may give, beyond it
 /// where it explains more.
 fn is_serious(rival: &Rival, best: &Rival, limits: &VerdictLimits) -> bool {
-    if rival.beyond_start { rival.bits > best.bits } else { best.all_bits() - rival.all_bits() < limits.margin_bits() }
+    if rival.beyond_start {
+        rival.bits > best.bits
+    } else {
+        best.posterior_bits() - rival.posterior_bits() < limits.margin_bits()
+    }
 }
 
 /// True where two poses differ along what the data hold.
-fn differs(a: &Rival, b: &Rival, hold: &Hold, directions: &[HeldDirection], limits: &VerdictLimits) -> bool {
+fn differs(
+    a: &Rival,
+    b: &Rival,
+    hold: &PoseInformation,
+    directions: &[DirectionEstimate],
+    limits: &VerdictLimits,
+) -> bool {
     let mut motion = hold.chart.between(&a.city_from_sfm, &b.city_from_sfm);
     for d in directions.iter().filter(|d| !d.determined) {
         motion -= d.unit * d.unit.dot(&motion);
@@ -129,11 +139,11 @@ fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> 
     let best = &evidence.rivals[0];
     let within: Vec<&&Rival> = others.iter().filter(|r| !r.beyond_start).collect();
     // The share that the start gives to the best among all that the search chose from.
-    let tried = within.iter().filter(|r| !r.by_chance).map(|r| (r.bits_of_start - best.bits_of_start).exp2());
+    let tried = within.iter().filter(|r| !r.by_chance).map(|r| (r.prior_bits - best.prior_bits).exp2());
     let search_bits = (1.0 + tried.sum::<f64>()).log2();
     // Odds against the pose: chance among all that were tried, and each rival.
     let chance = (search_bits - best.bits).exp2();
-    let of_rivals: f64 = within.iter().map(|r| (r.all_bits() - best.all_bits()).exp2()).sum();
+    let of_rivals: f64 = within.iter().map(|r| (r.posterior_bits() - best.posterior_bits()).exp2()).sum();
     Certainty {
         bits: best.bits,
         search_bits,
@@ -147,10 +157,10 @@ fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> 
     }
 }
 
-fn alternatives(best: &Rival, others: &[&Rival], hold: &Hold) -> Vec<Alternative> {
-    let lag = |r: &Rival| best.all_bits() - r.all_bits();
+fn alternatives(best: &Rival, others: &[&Rival], hold: &PoseInformation) -> Vec<Alternative> {
+    let lag = |r: &Rival| best.posterior_bits() - r.posterior_bits();
     let mut told: Vec<&Rival> = others.iter().copied().filter(|r| lag(r) < WORTH_TELLING_BITS).collect();
-    told.sort_by(|a, b| b.all_bits().total_cmp(&a.all_bits()));
+    told.sort_by(|a, b| b.posterior_bits().total_cmp(&a.posterior_bits()));
     let total: f64 = 1.0 + told.iter().map(|r| (-lag(r)).exp2()).sum::<f64>();
     told.iter()
         .map(|r| Alternative {
@@ -180,13 +190,13 @@ fn failed_reason(certainty: &Certainty, evidence: &Evidence) -> String {
     )
 }
 
-fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &Hold) -> String {
-    let heaviest = serious.iter().max_by(|a, b| a.all_bits().total_cmp(&b.all_bits()));
+fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &PoseInformation) -> String {
+    let heaviest = serious.iter().max_by(|a, b| a.posterior_bits().total_cmp(&b.posterior_bits()));
     let how = heaviest.map_or(String::new(), |r| {
         let differs = words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.chart.center);
         format!(
             " (the likeliest: {differs}; the evidence for the best leads it by {:.1} bits)",
-            best.all_bits() - r.all_bits()
+            best.posterior_bits() - r.posterior_bits()
         )
     });
     format!(
@@ -196,7 +206,7 @@ fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &Hold) -> String {
     )
 }
 
-fn beyond_reason(best: &Rival, beyond: &Rival, hold: &Hold) -> String {
+fn beyond_reason(best: &Rival, beyond: &Rival, hold: &PoseInformation) -> String {
     format!(
         "beyond three sigmas of the start a pose explains more: {}, evidence of {:.1} bits against {:.1}; check the start, or give it larger sigmas",
         words::difference(&best.city_from_sfm, &beyond.city_from_sfm, &hold.chart.center),
@@ -222,7 +232,7 @@ fn significant(value: f64) -> String {
     format!("{value:.*}", digits.clamp(0.0, 12.0) as usize)
 }
 
-fn undetermined_reason(hold: &Hold, limits: &VerdictLimits) -> Option<String> {
+fn undetermined_reason(hold: &PoseInformation, limits: &VerdictLimits) -> Option<String> {
     let open: Vec<String> = freedoms(hold, limits)
         .into_iter()
         .filter(|f| !f.determined && !f.given)
@@ -235,7 +245,7 @@ fn aligned_reason(
     best: &Rival,
     others: &[&Rival],
     certainty: &Certainty,
-    hold: &Hold,
+    hold: &PoseInformation,
     limits: &VerdictLimits,
 ) -> String {
     let loosest = freedoms(hold, limits).into_iter().find(|f| !f.given);
@@ -263,16 +273,16 @@ mod tests {
 
     fn rival(shift: [f64; 3], bits: f64) -> Rival {
         let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
-        Rival { city_from_sfm, bits, bits_of_start: -1.0, beyond_start: false, by_chance: false }
+        Rival { city_from_sfm, bits, prior_bits: -1.0, beyond_start: false, by_chance: false }
     }
 
     /// Two planes that hold everything to 0.05 m, but for the freedom `open`.
-    fn hold(open: Option<usize>) -> Hold {
+    fn hold(open: Option<usize>) -> PoseInformation {
         let mut information = Matrix7::identity() * 200.0;
         if let Some(k) = open {
             information[(k, k)] = 0.0;
         }
-        Hold {
+        PoseInformation {
             chart: Chart::of_similarity(Point3::origin(), 20.0),
             information: information * 2.0,
             without: vec![information, information],
@@ -283,18 +293,18 @@ mod tests {
         }
     }
 
-    fn ruling(rivals: &[Rival], hold: &Hold) -> Ruling {
+    fn ruling(rivals: &[Rival], hold: &PoseInformation) -> Decision {
         let (rivals, hold) = (rivals.to_vec(), hold.clone());
         let evidence = Evidence { rivals, hold, witnesses: 20, speaking: 12, by_chance: 128, most_by_chance: 2.0 };
         judge(&evidence, &Limits::default().verdict)
     }
 
     /// The data say 2 % more than what was given, or as much.
-    fn with_given_scale(log_off: f64, log_sigma: f64) -> Hold {
+    fn with_given_scale(log_off: f64, log_sigma: f64) -> PoseInformation {
         let given_scale = GivenScale { given: 6.85, of_data: 6.85 * log_off.exp(), log_sigma, bits: 30.0 };
         let mut hold = hold(None);
         hold.chart.motion = Motion::Rigid;
-        Hold { given_scale: Some(given_scale), ..hold }
+        PoseInformation { given_scale: Some(given_scale), ..hold }
     }
 
     #[test]
@@ -351,7 +361,7 @@ mod tests {
     fn a_freedom_that_turns_open_with_another_once_a_witness_is_left_out_is_undetermined() {
         let mut hold = hold(None);
         assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Aligned);
-        // Without one witness only the sum of two freedoms is held: either looks held where the other is not asked.
+        // Without one front only the sum of two freedoms is held: either looks held where the other is not asked.
         let held = hold.without[1][(3, 3)] * (1.0 - 1e-9);
         hold.without[1][(3, 4)] = held;
         hold.without[1][(4, 3)] = held;
@@ -377,7 +387,7 @@ mod tests {
 
     #[test]
     fn what_is_determined_is_for_the_user_to_say() {
-        let exact = Hold { accuracy_m: 0.04, ..hold(None) };
+        let exact = PoseInformation { accuracy_m: 0.04, ..hold(None) };
         assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &exact).verdict, Verdict::Undetermined);
     }
 
@@ -409,8 +419,8 @@ mod tests {
     #[test]
     fn a_pose_that_the_start_finds_unlikely_among_those_tried_needs_more_evidence() {
         let needed = |of_best: f64, of_other: f64| {
-            let best = Rival { bits_of_start: of_best, ..rival([0.0; 3], 12.0) };
-            let other = Rival { bits_of_start: of_other, ..rival([5.0, 0.0, 0.0], -20.0) };
+            let best = Rival { prior_bits: of_best, ..rival([0.0; 3], 12.0) };
+            let other = Rival { prior_bits: of_other, ..rival([5.0, 0.0, 0.0], -20.0) };
             ruling(&[best, other], &hold(None)).certainty.needed_bits
         };
         // A share of 8 in 9 costs a sixth of a bit, one of 1 in 9 three.
@@ -420,8 +430,8 @@ mod tests {
 
     #[test]
     fn a_rival_within_the_margin_is_ambiguous_and_the_start_has_its_say() {
-        let verdict = |bits: f64, bits_of_start: f64| {
-            let second = Rival { bits_of_start, ..rival([5.0, 0.0, 0.0], bits) };
+        let verdict = |bits: f64, prior_bits: f64| {
+            let second = Rival { prior_bits, ..rival([5.0, 0.0, 0.0], bits) };
             ruling(&[rival([0.0; 3], 40.0), second], &hold(None)).verdict
         };
         assert_eq!([29.0, 31.0].map(|bits| verdict(bits, -1.0)), [Verdict::Aligned, Verdict::Ambiguous]);

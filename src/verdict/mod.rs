@@ -5,8 +5,8 @@ mod freedoms;
 mod judge;
 mod words;
 
-pub use freedoms::{GivenScale, Hold, freedoms};
-pub use judge::{Evidence, Rival, Ruling, judge};
+pub use freedoms::{GivenScale, PoseInformation, freedoms};
+pub use judge::{Decision, Evidence, Rival, judge};
 
 use crate::geometry::{Point3, Similarity, Vector3};
 
@@ -61,7 +61,7 @@ pub struct Alignment {
     /// Rows and columns: rotation vector about `center` (rad), translation of `center` (m), log scale; city frame.
     pub covariance: [[f64; 7]; 7],
     pub support: Support,
-    pub evidence: Vec<PlaneEvidence>,
+    pub evidence: Vec<PlaneSupport>,
     pub search: SearchSummary,
     pub warnings: Vec<String>,
 }
@@ -183,7 +183,7 @@ pub struct Support {
 
 /// What one city plane contributes.
 #[derive(Clone, Debug)]
-pub struct PlaneEvidence {
+pub struct PlaneSupport {
     /// Index of the plane in the city's planes.
     pub plane: u32,
     pub object: String,

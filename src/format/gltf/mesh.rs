@@ -20,7 +20,7 @@ const ELEMENT_LIMIT: usize = 1 << 26;
 /// zeros. Chosen: a lamp of 4,000 of them may be at every corner.
 const ELEMENTS_PER_BYTE: usize = 64;
 
-/// ... and to this many in any case; they take a few megabytes.
+/// Vertices and indices that are allowed in any case; they take a few megabytes.
 const ELEMENTS_OF_ANY_FILE: usize = 1 << 16;
 
 /// As many elements stand for what is kept of a node with a mesh, and of a primitive, besides.

@@ -7,11 +7,11 @@ use crate::geometry::Vector3;
 use crate::limits::VerdictLimits;
 use crate::merging::limits::MergeLimits;
 use crate::robust::Matrix7;
-use crate::verdict::{Freedom, FreedomKind, FreedomUnit, Hold};
+use crate::verdict::{Freedom, FreedomKind, FreedomUnit, PoseInformation};
 
 /// In the city's frame: metres and directions by their names.
 pub(super) fn in_the_city(held: &Held, limits: &VerdictLimits) -> Vec<Freedom> {
-    let hold = Hold {
+    let hold = PoseInformation {
         chart: held.chart,
         information: held.information,
         // Edges have been confirmed by those who made them.

@@ -14,7 +14,7 @@ use super::rows::{Miss, Piece, Rows, Source};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::merging::limits::FitLimits;
 use crate::merging::point_covariance::KnownPoint;
-use crate::robust::{Chart, Matrix7, NormalEquations, tukey_weight, vote};
+use crate::robust::{Chart, Matrix7, NormalEquations, truncated_quadratic, tukey_weight};
 
 /// Median of the size of a whitened residual with one degree of freedom.
 const MEDIAN_SIZE: f64 = 0.6745;
@@ -48,13 +48,13 @@ impl<'a> PlaneRows<'a> {
     ) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0f64);
         for point in points {
-            sum += vote(whitened_sq(&self.measured(group, point, a_from_b)), self.limits.gate_sigmas);
+            sum += truncated_quadratic(whitened_sq(&self.measured(group, point, a_from_b)), self.limits.gate_sigmas);
             count += 1.0;
         }
         group.share * sum / count.max(1.0).sqrt()
     }
 
-    /// Mean vote, each group counting by the root of its points: 1 where every point lies on its plane.
+    /// Mean of the truncated quadratic, each group counting by the root of its points: 1 where every point lies on its plane.
     pub fn score(&self, a_from_b: &Similarity) -> f64 {
         let (mut sum, mut all) = (0.0, 0.0);
         for group in &self.planes.groups {

@@ -9,7 +9,7 @@ use super::rows::{Miss, Piece, Rows, Source};
 use super::track_evidence::PointPair;
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::merging::limits::FitLimits;
-use crate::robust::{Chart, NormalEquations, tukey_weight, vote};
+use crate::robust::{Chart, NormalEquations, truncated_quadratic, tukey_weight};
 
 /// Median of the norm of a whitened residual with three degrees of freedom (square root of the chi-square's 2.366).
 pub(super) const MEDIAN_NORM: f64 = 1.538;
@@ -47,7 +47,7 @@ impl<'a> PointRows<'a> {
     /// What of the pairs agrees with a pose.
     pub fn votes(&self, a_from_b: &Similarity) -> f64 {
         let gate = self.limits.gate_sigmas;
-        self.pairs.iter().map(|pair| vote(self.whitened(pair, a_from_b).norm_squared(), gate)).sum()
+        self.pairs.iter().map(|pair| truncated_quadratic(self.whitened(pair, a_from_b).norm_squared(), gate)).sum()
     }
 
     /// Adds one pair; the robust weight that it got.

@@ -1,4 +1,4 @@
-//! The cloud as a set of votes in the level frame: metres as the start has them, z up, heading as the start has it, origin in
+//! The cloud in the level frame, each point with its weight: metres as the start has them, z up, heading as the start has it, origin in
 //! the middle of the cloud.
 //!
 //! Question     which points shall judge a pose, and how much does each of them count?
@@ -9,7 +9,7 @@
 use super::prior::Extent;
 use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
 use crate::limits::Limits;
-use crate::planes::{Patches, Probe, Upright};
+use crate::planes::{OrientedPoint, Patches, Upright};
 
 /// A planar group in the level frame.
 #[derive(Clone, Debug)]
@@ -20,66 +20,66 @@ pub struct LevelPatch {
     /// Standard deviations along the two in-plane axes, and the axes.
     pub spread: [f64; 2],
     pub axes: [Vector3<f64>; 2],
-    /// Range in [`Votes::probes`].
-    pub probes: std::ops::Range<usize>,
-    /// Share of the whole vote.
+    /// Range in [`LevelCloud::sample_points`].
+    pub sample_points: std::ops::Range<usize>,
+    /// Share of the weight of all patches.
     pub weight: f64,
 }
 
-/// All votes of a cloud.
+/// The weighted cloud in the level frame.
 #[derive(Clone, Debug)]
-pub struct Votes {
+pub struct LevelCloud {
     pub level_from_sfm: Similarity,
     /// Where the start puts the level frame's origin; city frame (local).
     pub center_in_city: Point3<f64>,
     pub patches: Vec<LevelPatch>,
     /// Points of the patches, patch by patch, then loose points that cameras saw; level frame.
-    pub probes: Vec<Probe>,
+    pub sample_points: Vec<OrientedPoint>,
     /// Where the cameras stood; level frame.
     pub cameras: Vec<Point3<f64>>,
-    /// For each probe the nearest and the farthest camera that saw it (indices into `cameras`).
+    /// For each sample point the nearest and the farthest camera that saw it (indices into `cameras`).
     pub viewers: Vec<[Option<u32>; 2]>,
-    /// How many of the probes belong to patches.
-    pub firm: usize,
-    /// Weight of each probe: those of patches add up to 1, loose ones have none.
+    /// How many of the sample points belong to patches.
+    pub patch_points: usize,
+    /// Weight of each sample point: those of patches add up to 1, loose ones have none.
     pub weights: Vec<f64>,
-    /// Index of each probe in `Patches::points`.
+    /// Index of each sample point in `Patches::points`.
     pub point_of: Vec<u32>,
     /// Noise of points across their local planes, level frame (metres of the start).
     pub noise_m: f64,
-    /// Horizontal radius within which nine in ten votes lie, metres of the start.
+    /// Horizontal radius within which nine in ten sample points lie, metres of the start.
     pub radius_m: f64,
 }
 
-impl Votes {
+impl LevelCloud {
     /// `city_from_sfm` is where the start puts the cloud in the city's local frame; `upright` tells its up.
-    pub fn new(patches: &Patches, city_from_sfm: &Similarity, upright: &Upright, limits: &Limits) -> Votes {
+    pub fn new(patches: &Patches, city_from_sfm: &Similarity, upright: &Upright, limits: &Limits) -> LevelCloud {
         // The smallest turn that levels the cloud after the start's rotation.
         let up_in_city = city_from_sfm.rotation * upright.up;
         let leveling = Rotation3::rotation_between(&up_in_city, &Vector3::z()).unwrap_or_else(half_turn);
         let middle = patches.middle();
         let rotation = leveling * city_from_sfm.rotation;
         let level_from_sfm = Similarity::about(&middle, &Point3::origin(), city_from_sfm.scale, rotation);
-        let mut votes = Votes {
+        let mut level_cloud = LevelCloud {
             level_from_sfm,
             center_in_city: city_from_sfm.apply(&middle),
             patches: Vec::new(),
-            probes: Vec::new(),
+            sample_points: Vec::new(),
             cameras: patches.cameras.iter().map(|c| level_from_sfm.apply(c)).collect(),
             viewers: Vec::new(),
-            firm: 0,
+            patch_points: 0,
             weights: Vec::new(),
             point_of: Vec::new(),
             noise_m: patches.noise * city_from_sfm.scale,
             radius_m: 0.0,
         };
-        votes.take_patches(patches, 3.0 * upright.sigma_rad < limits.tells_floors_rad, limits);
-        votes.firm = votes.probes.len();
-        votes.weigh(limits);
-        votes.take_loose_points(patches, limits);
-        votes.viewers = votes.point_of.iter().map(|&i| patches.viewers[i as usize]).collect();
-        votes.radius_m = votes.horizontal_radius();
-        votes
+        level_cloud.take_patches(patches, 3.0 * upright.sigma_rad < limits.tells_floors_rad, limits);
+        level_cloud.patch_points = level_cloud.sample_points.len();
+        level_cloud.weigh(limits);
+        level_cloud.take_loose_points(patches, limits);
+        level_cloud.viewers = level_cloud.point_of.iter().map(|&i| patches.viewers[i as usize]).collect();
+        level_cloud.radius_m = level_cloud.horizontal_radius();
+        level_cloud
     }
 
     /// `floors_look_up`: whether z is near enough to up to tell the side of level patches.
@@ -94,10 +94,10 @@ impl Votes {
                 normal = -normal;
             }
             let sided = patch.sided || level;
-            let first = self.probes.len();
+            let first = self.sample_points.len();
             for &m in &patch.members {
                 let position = to_level.apply(&patches.points[m as usize]);
-                self.probes.push(Probe { position, normal, sided, min_cos });
+                self.sample_points.push(OrientedPoint { position, normal, sided, min_cos });
                 self.point_of.push(m);
             }
             self.patches.push(LevelPatch {
@@ -106,7 +106,7 @@ impl Votes {
                 sided,
                 spread: patch.fit.spread.map(|s| s * to_level.scale),
                 axes: patch.fit.axes.map(|a| to_level.rotation * a),
-                probes: first..self.probes.len(),
+                sample_points: first..self.sample_points.len(),
                 weight: 0.0,
             });
         }
@@ -122,7 +122,7 @@ impl Votes {
         for (i, (point, view)) in patches.points.iter().zip(&patches.views).enumerate() {
             let Some(view) = view.try_normalize(0.0).filter(|_| !taken[i]) else { continue };
             let position = to_level.apply(point);
-            self.probes.push(Probe { position, normal: to_level.rotation * view, sided: true, min_cos });
+            self.sample_points.push(OrientedPoint { position, normal: to_level.rotation * view, sided: true, min_cos });
             self.point_of.push(i as u32);
             self.weights.push(0.0);
         }
@@ -131,33 +131,34 @@ impl Votes {
     fn weigh(&mut self, limits: &Limits) {
         let mut classes = [0.0; CLASSES];
         for patch in &self.patches {
-            classes[class(&patch.normal, limits.upright_sin)] += (patch.probes.len() as f64).sqrt();
+            classes[class(&patch.normal, limits.upright_sin)] += (patch.sample_points.len() as f64).sqrt();
         }
         let total: f64 = classes.iter().map(|c| c.sqrt()).sum();
-        self.weights = vec![0.0; self.probes.len()];
+        self.weights = vec![0.0; self.sample_points.len()];
         for patch in &mut self.patches {
-            let size = patch.probes.len() as f64;
+            let size = patch.sample_points.len() as f64;
             patch.weight = size.sqrt() / classes[class(&patch.normal, limits.upright_sin)].sqrt() / total;
-            self.weights[patch.probes.clone()].fill(patch.weight / size);
+            self.weights[patch.sample_points.clone()].fill(patch.weight / size);
         }
     }
 
     fn horizontal_radius(&self) -> f64 {
-        let mut radii: Vec<f64> = self.probes[..self.firm].iter().map(|p| p.position.coords.xy().norm()).collect();
+        let mut radii: Vec<f64> =
+            self.sample_points[..self.patch_points].iter().map(|p| p.position.coords.xy().norm()).collect();
         radii.sort_by(f64::total_cmp);
         radii.get(radii.len() * 9 / 10).copied().unwrap_or(0.0)
     }
 
     /// How far the cloud reaches about its middle, stray points left out.
     pub fn extent(&self) -> Extent {
-        let mut heights: Vec<f64> = self.probes[..self.firm].iter().map(|p| p.position.z).collect();
+        let mut heights: Vec<f64> = self.sample_points[..self.patch_points].iter().map(|p| p.position.z).collect();
         heights.sort_by(f64::total_cmp);
         let at = |share: f64| heights.get((heights.len() as f64 * share) as usize).copied().unwrap_or(0.0);
         Extent { radius_m: BEYOND_RADIUS * self.radius_m, bottom_m: at(0.002), top_m: at(0.998) }
     }
 
-    /// `count` indices of probes, each drawn with its weight, evenly over the patches: every one of them counts alike.
-    pub fn panel(&self, count: usize) -> Vec<u32> {
+    /// `count` indices of sample points, each drawn with its weight, evenly over the patches: every one of them counts alike.
+    pub fn point_subset(&self, count: usize) -> Vec<u32> {
         let mut chosen = Vec::with_capacity(count);
         let mut sum = 0.0;
         for (i, w) in self.weights.iter().enumerate() {
@@ -202,26 +203,26 @@ mod tests {
     fn the_level_frame_stands_upright_about_the_cloud_in_metres_of_the_start() {
         let made = Made::four_houses();
         let start = Offset { heading_rad: 0.2, tilt_rad: [0.05, 0.1], scale: 1.1, ..Offset::default() };
-        let votes = made.scene(&start, Motion::Similarity).votes;
-        assert_eq!(votes.level_from_sfm.apply(&made.patches.middle()), Point3::origin());
-        let up = votes.level_from_sfm.rotation * made.survey.city_from_sfm.rotation.inverse() * Vector3::z();
+        let level_cloud = made.scene(&start, Motion::Similarity).level_cloud;
+        assert_eq!(level_cloud.level_from_sfm.apply(&made.patches.middle()), Point3::origin());
+        let up = level_cloud.level_from_sfm.rotation * made.survey.city_from_sfm.rotation.inverse() * Vector3::z();
         assert!((up - Vector3::z()).norm() < 1e-12, "{up}");
-        assert!((votes.level_from_sfm.scale / (1.1 * made.survey.city_from_sfm.scale) - 1.0).abs() < 1e-12);
+        assert!((level_cloud.level_from_sfm.scale / (1.1 * made.survey.city_from_sfm.scale) - 1.0).abs() < 1e-12);
         // Axis by axis 2 cm, and the start's scale.
-        assert!((votes.noise_m / (1.1 * 0.02) - 1.0).abs() < 0.2, "{}", votes.noise_m);
+        assert!((level_cloud.noise_m / (1.1 * 0.02) - 1.0).abs() < 0.2, "{}", level_cloud.noise_m);
     }
 
     #[test]
     fn weights_are_one_vote_together_and_little_ground_is_heard_beside_many_walls() {
         let seen = CloudOptions { points_on_ground: 60, ..walls_alone() };
         let made = Made::cloud(Block::four_houses().with_ground(true), &seen);
-        let votes = made.scene(&Offset::default(), Motion::Rigid).votes;
-        assert!((votes.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
-        let of_ground: f64 = votes.patches.iter().filter(|p| p.normal.z > 0.9).map(|p| p.weight).sum();
-        let share_of_points = 60.0 / votes.firm as f64;
+        let level_cloud = made.scene(&Offset::default(), Motion::Rigid).level_cloud;
+        assert!((level_cloud.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        let of_ground: f64 = level_cloud.patches.iter().filter(|p| p.normal.z > 0.9).map(|p| p.weight).sum();
+        let share_of_points = 60.0 / level_cloud.patch_points as f64;
         assert!(of_ground > 2.0 * share_of_points, "{of_ground} {share_of_points}");
-        for patch in &votes.patches {
-            let sum: f64 = votes.weights[patch.probes.clone()].iter().sum();
+        for patch in &level_cloud.patches {
+            let sum: f64 = level_cloud.weights[patch.sample_points.clone()].iter().sum();
             assert!((sum - patch.weight).abs() < 1e-12);
         }
     }
@@ -231,14 +232,15 @@ mod tests {
         let roof = |k: i32| (Point3::new(1.0 + f64::from(k), 4.0, 7.0), Vector3::z());
         let survey = with_points(Block::four_houses().cloud(&walls_alone()), &(0..5).map(roof).collect::<Vec<_>>());
         let made = Made::new(Block::four_houses(), survey);
-        let votes = made.scene(&Offset::default(), Motion::Rigid).votes;
-        assert_eq!(votes.probes.len(), votes.firm + 5);
+        let level_cloud = made.scene(&Offset::default(), Motion::Rigid).level_cloud;
+        assert_eq!(level_cloud.sample_points.len(), level_cloud.patch_points + 5);
         for count in [1, 200, 1500] {
-            let panel = votes.panel(count);
-            assert_eq!(panel.len(), count);
-            assert!(panel.iter().all(|i| (*i as usize) < votes.firm));
-            for patch in &votes.patches {
-                let drawn = panel.iter().filter(|i| patch.probes.contains(&(**i as usize))).count() as f64;
+            let point_subset = level_cloud.point_subset(count);
+            assert_eq!(point_subset.len(), count);
+            assert!(point_subset.iter().all(|i| (*i as usize) < level_cloud.patch_points));
+            for patch in &level_cloud.patches {
+                let drawn =
+                    point_subset.iter().filter(|i| patch.sample_points.contains(&(**i as usize))).count() as f64;
                 assert!((drawn - patch.weight * count as f64).abs() <= 1.0, "{drawn} of {count}, {}", patch.weight);
             }
         }
@@ -247,15 +249,15 @@ mod tests {
     #[test]
     fn the_extent_holds_the_cloud_but_for_stray_points() {
         let made = Made::four_houses();
-        let votes = made.scene(&Offset::default(), Motion::Rigid).votes;
-        let extent = votes.extent();
-        let holds = |p: &Probe| {
+        let level_cloud = made.scene(&Offset::default(), Motion::Rigid).level_cloud;
+        let extent = level_cloud.extent();
+        let holds = |p: &OrientedPoint| {
             let z = p.position.z;
             p.position.coords.xy().norm() <= extent.radius_m && z >= extent.bottom_m && z <= extent.top_m
         };
-        let held = votes.probes[..votes.firm].iter().filter(|p| holds(p)).count();
+        let held = level_cloud.sample_points[..level_cloud.patch_points].iter().filter(|p| holds(p)).count();
         // The radius of nine in ten, and a fifth more.
-        assert!(held as f64 > 0.9 * votes.firm as f64, "{held} of {}", votes.firm);
+        assert!(held as f64 > 0.9 * level_cloud.patch_points as f64, "{held} of {}", level_cloud.patch_points);
         // The houses are up to 12 m high.
         assert!((extent.top_m - extent.bottom_m - 12.0).abs() < 1.0, "{extent:?}");
     }

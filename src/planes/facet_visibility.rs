@@ -10,22 +10,22 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::surface::CitySurface;
 use crate::geometry::{Point3, Vector3};
-use crate::limits::ExposureLimits;
+use crate::limits::FacetVisibilityLimits;
 
 /// For each triangle of a city whether it is exposed, found out when first asked.
-pub(super) struct Exposure {
+pub(super) struct FacetVisibility {
     known: Vec<AtomicU8>,
-    limits: ExposureLimits,
+    limits: FacetVisibilityLimits,
 }
 
 const UNKNOWN: u8 = 0;
 const HIDDEN: u8 = 1;
 const EXPOSED: u8 = 2;
 
-impl Exposure {
-    pub fn new(surface: &CitySurface, limits: &ExposureLimits) -> Exposure {
+impl FacetVisibility {
+    pub fn new(surface: &CitySurface, limits: &FacetVisibilityLimits) -> FacetVisibility {
         let triangles = surface.model.triangles.len();
-        Exposure { known: (0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect(), limits: *limits }
+        FacetVisibility { known: (0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect(), limits: *limits }
     }
 
     /// Two threads that ask at once find the same.
@@ -42,7 +42,7 @@ impl Exposure {
     }
 }
 
-fn is_exposed(triangle: u32, surface: &CitySurface, limits: &ExposureLimits) -> bool {
+fn is_exposed(triangle: u32, surface: &CitySurface, limits: &FacetVisibilityLimits) -> bool {
     let normal = |t: u32| surface.normal_of(t);
     let ends_in_the_open =
         |from: &Point3<f64>, direction: &Vector3<f64>| match surface.rays().first_hit(from, direction, limits.open_m) {

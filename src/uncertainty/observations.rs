@@ -10,14 +10,14 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::city::ObjectId;
-use crate::correspondence::{ProbeOnPlane, Refiner};
+use crate::correspondence::{PointPlaneMatch, PoseRefiner};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::limits::UncertaintyLimits;
 use crate::planes::CityPlanes;
 
 /// One observation: how far the city's surface and the cloud's are apart at a place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct SurfaceCell {
     /// On the city's surface.
     pub foot: Point3<f64>,
     /// Of the city's surface, outward.
@@ -43,7 +43,7 @@ pub(super) const KINDS: usize = 3;
 
 /// Planes of one building in one plane in space.
 #[derive(Clone, Debug)]
-pub(super) struct Front {
+pub(super) struct BuildingPlane {
     pub pieces: Range<usize>,
     pub middle: Point3<f64>,
     /// In the front, and how far it reaches along them, metres.
@@ -67,9 +67,9 @@ pub(super) struct Building {
 
 /// What is observed, sorted by buildings and fronts.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sample {
-    pub pieces: Vec<Piece>,
-    pub fronts: Vec<Front>,
+pub(super) struct Observations {
+    pub pieces: Vec<SurfaceCell>,
+    pub fronts: Vec<BuildingPlane>,
     pub buildings: Vec<Building>,
     /// Noise of one point across its surface, metres.
     pub point_sigma_m: f64,
@@ -80,7 +80,7 @@ pub(super) struct Sample {
 /// A row with what it belongs to.
 struct Placed<'a> {
     building: (ObjectId, [i32; 2]),
-    row: &'a ProbeOnPlane,
+    row: &'a PointPlaneMatch,
 }
 
 /// Extent of an object, and how much of it is wall.
@@ -92,19 +92,19 @@ struct Body {
 }
 
 /// What lies on the city within `gate_m` (metres of the start) at `pose`.
-pub(super) fn sample(refiner: &Refiner, pose: &Similarity, gate_m: f64) -> Sample {
+pub(super) fn sample(refiner: &PoseRefiner, pose: &Similarity, gate_m: f64) -> Observations {
     let scene = refiner.scene;
     let limits = &scene.limits.uncertainty;
-    let all: Vec<u32> = (0..scene.votes.probes.len() as u32).collect();
-    let rows = refiner.probes_on_planes(&all, pose, gate_m);
+    let all: Vec<u32> = (0..scene.level_cloud.sample_points.len() as u32).collect();
+    let rows = refiner.point_plane_matches(&all, pose, gate_m);
     let planes = scene.city.planes();
     let bodies = bodies(planes, scene.limits.upright_sin);
     let mut placed: Vec<Placed> =
         rows.iter().map(|row| Placed { building: building_of(row, planes, &bodies, limits), row }).collect();
     // Rows come sorted by plane, and stay so within a building.
     placed.sort_by_key(|p| p.building);
-    let point_sigma_m = (scene.votes.noise_m * pose.scale).max(scene.limits.least_point_sigma_m);
-    let mut sample = Sample { point_sigma_m, ..Sample::default() };
+    let point_sigma_m = (scene.level_cloud.noise_m * pose.scale).max(scene.limits.least_point_sigma_m);
+    let mut sample = Observations { point_sigma_m, ..Observations::default() };
     for of_building in placed.chunk_by(|a, b| a.building == b.building) {
         let body = bodies.get(&of_building[0].building.0);
         let has_walls = body.is_some_and(|body| body.walls_m2 > limits.least_walls * body.other_m2);
@@ -128,7 +128,7 @@ fn bodies(planes: &CityPlanes, upright_sin: f64) -> HashMap<ObjectId, Body> {
 }
 
 fn building_of(
-    row: &ProbeOnPlane,
+    row: &PointPlaneMatch,
     planes: &CityPlanes,
     bodies: &HashMap<ObjectId, Body>,
     limits: &UncertaintyLimits,
@@ -139,7 +139,7 @@ fn building_of(
     (object, if is_one { [0, 0] } else { [square(row.place.x), square(row.place.y)] })
 }
 
-impl Sample {
+impl Observations {
     /// Whether the model is one of boxes: all tops on which points lie are level.
     fn tell_lids(&mut self) {
         let mut tops = self.fronts.iter().filter(|front| front.kind == Kind::Built && !front.is_wall).peekable();
@@ -161,17 +161,18 @@ impl Sample {
         self.buildings.push(Building { fronts: first..self.fronts.len(), middle, lever_m, kind });
     }
 
-    fn take_front(&mut self, rows: &[&ProbeOnPlane], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
+    fn take_front(&mut self, rows: &[&PointPlaneMatch], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
         let first = self.pieces.len();
-        let cell = |row: &ProbeOnPlane| row.place.coords.map(|x| (x / limits.piece_m).floor() as i64);
-        let mut sorted: Vec<([i64; 3], &ProbeOnPlane)> = rows.iter().map(|row| (cell(row).into(), *row)).collect();
+        let cell = |row: &PointPlaneMatch| row.place.coords.map(|x| (x / limits.piece_m).floor() as i64);
+        let mut sorted: Vec<([i64; 3], &PointPlaneMatch)> = rows.iter().map(|row| (cell(row).into(), *row)).collect();
         sorted.sort_by_key(|(cell, _)| *cell);
-        let (sigma_m, tails) = (self.point_sigma_m, limits.tails);
-        self.pieces.extend(sorted.chunk_by(|a, b| a.0 == b.0).map(|points| piece(points, sigma_m, tails)));
+        let (sigma_m, student_dof) = (self.point_sigma_m, limits.student_dof);
+        self.pieces.extend(sorted.chunk_by(|a, b| a.0 == b.0).map(|points| piece(points, sigma_m, student_dof)));
         let pieces = &self.pieces[first..];
         let total: f64 = pieces.iter().map(|p| p.points).sum();
-        let mean =
-            |of: &dyn Fn(&Piece) -> Vector3<f64>| pieces.iter().map(|p| of(p) * p.points).sum::<Vector3<f64>>() / total;
+        let mean = |of: &dyn Fn(&SurfaceCell) -> Vector3<f64>| {
+            pieces.iter().map(|p| of(p) * p.points).sum::<Vector3<f64>>() / total
+        };
         let middle = Point3::from(mean(&|p| p.foot.coords));
         let normal = mean(&|p| p.normal).try_normalize(0.0).unwrap_or(pieces[0].normal);
         let along = normal.cross(&Vector3::z()).try_normalize(upright_sin).unwrap_or(Vector3::x());
@@ -183,19 +184,27 @@ impl Sample {
         let is_wall = normal.z.abs() < upright_sin;
         let is_top = has_walls && normal.z > 1.0 - upright_sin;
         let kind = if has_walls { Kind::Built } else { Kind::Ground };
-        self.fronts.push(Front { pieces: first..self.pieces.len(), middle, axes, reach_m, is_wall, is_top, kind });
+        self.fronts.push(BuildingPlane {
+            pieces: first..self.pieces.len(),
+            middle,
+            axes,
+            reach_m,
+            is_wall,
+            is_top,
+            kind,
+        });
     }
 }
 
 /// Rows of one building by front: planes that lie in one plane in space, the largest first.
-fn fronts<'a>(rows: &[Placed<'a>], limits: &UncertaintyLimits) -> Vec<Vec<&'a ProbeOnPlane>> {
-    let mut planes: Vec<Vec<&ProbeOnPlane>> = rows
+fn fronts<'a>(rows: &[Placed<'a>], limits: &UncertaintyLimits) -> Vec<Vec<&'a PointPlaneMatch>> {
+    let mut planes: Vec<Vec<&PointPlaneMatch>> = rows
         .chunk_by(|a, b| a.row.hit.plane == b.row.hit.plane)
         .map(|plane| plane.iter().map(|p| p.row).collect())
         .collect();
     planes.sort_by(|a, b| b.len().cmp(&a.len()).then(a[0].hit.plane.cmp(&b[0].hit.plane)));
     let least_cos = limits.same_front_deg.to_radians().cos();
-    let mut found: Vec<(Vector3<f64>, Point3<f64>, Vec<&ProbeOnPlane>)> = Vec::new();
+    let mut found: Vec<(Vector3<f64>, Point3<f64>, Vec<&PointPlaneMatch>)> = Vec::new();
     for plane in planes {
         let (normal, middle) = (plane[0].hit.normal, centroid(plane.iter().copied()));
         let same = found
@@ -209,7 +218,7 @@ fn fronts<'a>(rows: &[Placed<'a>], limits: &UncertaintyLimits) -> Vec<Vec<&'a Pr
     found.into_iter().map(|(_, _, front)| front).collect()
 }
 
-fn centroid<'a>(rows: impl Iterator<Item = &'a ProbeOnPlane>) -> Point3<f64> {
+fn centroid<'a>(rows: impl Iterator<Item = &'a PointPlaneMatch>) -> Point3<f64> {
     let (sum, count) = rows.fold((Vector3::zeros(), 0.0), |(sum, count), row| (sum + row.place.coords, count + 1.0));
     Point3::from(sum / f64::max(count, 1.0))
 }
@@ -217,27 +226,27 @@ fn centroid<'a>(rows: impl Iterator<Item = &'a ProbeOnPlane>) -> Point3<f64> {
 /// Rounds in which the points of a piece agree on its distance.
 const ROUNDS: usize = 3;
 
-/// The points of one cell as one observation, about their median and with heavy tails of so many degrees of freedom. Noise stands across
+/// The points of one cell as one observation, about their median and by Student's t of so many degrees of freedom. Noise stands across
 /// the surface, so the foot is where a row is taken: else a smaller scale would seem to make the noise smaller.
-fn piece(points: &[([i64; 3], &ProbeOnPlane)], sigma_m: f64, tails: f64) -> Piece {
+fn piece(points: &[([i64; 3], &PointPlaneMatch)], sigma_m: f64, student_dof: f64) -> SurfaceCell {
     let mut across: Vec<f64> = points.iter().map(|(_, row)| row.hit.across_m).collect();
     across.sort_by(f64::total_cmp);
     let mut across_m = across[across.len() / 2];
     let mut weights: Vec<f64> = Vec::new();
     for _ in 0..ROUNDS {
-        let weight = |row: &ProbeOnPlane| {
+        let weight = |row: &PointPlaneMatch| {
             let off = (row.hit.across_m - across_m) / sigma_m;
-            row.weight * (tails + 1.0) / (tails + off * off)
+            row.weight * (student_dof + 1.0) / (student_dof + off * off)
         };
         weights = points.iter().map(|(_, row)| weight(row)).collect();
         let sum: f64 = points.iter().zip(&weights).map(|((_, row), weight)| row.hit.across_m * weight).sum();
         across_m = sum / weights.iter().sum::<f64>();
     }
     let total: f64 = weights.iter().sum();
-    let mean = |of: &dyn Fn(&ProbeOnPlane) -> Vector3<f64>| {
+    let mean = |of: &dyn Fn(&PointPlaneMatch) -> Vector3<f64>| {
         points.iter().zip(&weights).map(|((_, row), weight)| of(row) * *weight).sum::<Vector3<f64>>() / total
     };
-    Piece {
+    SurfaceCell {
         foot: Point3::from(mean(&|row| row.place.coords - row.hit.normal * row.hit.across_m)),
         normal: mean(&|row| row.hit.normal).try_normalize(0.0).unwrap_or(points[0].1.hit.normal),
         across_m,

@@ -2,7 +2,7 @@
 //!
 //! Question     does the city stand between a camera and the points that it saw?
 //! Method       the line of sight from each point to two of its cameras is traced against all facets near the scene; points whose every
-//!              line is blocked contradict the pose: the camera would have looked through a house
+//!              line is occluded contradict the pose: the camera would have looked through a house
 //! Why          wrong poses find walls to lie on, but they rarely leave the streets free from which the photographs were taken; this
 //!              evidence does not depend on how much of the scene the model knows
 
@@ -12,26 +12,26 @@ use super::scene::Scene;
 use super::scoring::Mover;
 use crate::geometry::{Point3, Similarity, Vector3};
 
-/// Probes per task.
+/// Sample points per task.
 const CHUNK: usize = 128;
 
 impl Scene<'_> {
-    /// For each probe of `panel` whether every line of sight to its cameras is blocked; probes without cameras are not.
-    pub fn blocked(&self, panel: &[u32], city_from_level: &Similarity) -> Vec<bool> {
-        let votes = &self.votes;
-        let cameras: Vec<Point3<f64>> = votes.cameras.iter().map(|c| city_from_level.apply(c)).collect();
+    /// For each sample point of `point_subset` whether every line of sight to its cameras is occluded; sample points without cameras are not.
+    pub fn occluded(&self, point_subset: &[u32], city_from_level: &Similarity) -> Vec<bool> {
+        let level_cloud = &self.level_cloud;
+        let cameras: Vec<Point3<f64>> = level_cloud.cameras.iter().map(|c| city_from_level.apply(c)).collect();
         let mover = Mover::new(city_from_level);
         let is_blocked = |&i: &u32| {
-            let place = mover.probe(&votes.probes[i as usize]).position;
-            let mut viewers = votes.viewers[i as usize].iter().flatten().peekable();
-            viewers.peek().is_some() && viewers.all(|&c| self.hides(&place, &cameras[c as usize]))
+            let place = mover.sample_point(&level_cloud.sample_points[i as usize]).position;
+            let mut viewers = level_cloud.viewers[i as usize].iter().flatten().peekable();
+            viewers.peek().is_some() && viewers.all(|&c| self.occludes(&place, &cameras[c as usize]))
         };
-        let chunk = |panel: &[u32]| -> Vec<bool> { panel.iter().map(is_blocked).collect() };
-        panel.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat()
+        let chunk = |point_subset: &[u32]| -> Vec<bool> { point_subset.iter().map(is_blocked).collect() };
+        point_subset.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>().concat()
     }
 
     /// Whether the city stands between a point and a camera.
-    pub fn hides(&self, place: &Point3<f64>, camera: &Point3<f64>) -> bool {
+    pub fn occludes(&self, place: &Point3<f64>, camera: &Point3<f64>) -> bool {
         let limits = &self.limits.sight;
         let sight = camera - place;
         let length = sight.norm() - limits.surroundings_m - limits.camera_slack_m;
@@ -54,7 +54,7 @@ impl Scene<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::correspondence::test_scene::{Made, firm};
+    use crate::correspondence::test_scene::{Made, patch_points};
     use crate::robust::Motion;
     use crate::synthetic::Offset;
 
@@ -64,11 +64,11 @@ mod tests {
         let made = Made::four_houses();
         let mut scene = made.scene(&Offset::default(), Motion::Rigid);
         let local = |x: [f64; 3]| Point3::from(Vector3::from(x) - made.city.model.origin);
-        scene.votes.probes[0].position = local(place);
-        scene.votes.cameras = cameras.iter().map(|c| local(*c)).collect();
+        scene.level_cloud.sample_points[0].position = local(place);
+        scene.level_cloud.cameras = cameras.iter().map(|c| local(*c)).collect();
         let viewer = |k: usize| (k < cameras.len()).then_some(k as u32);
-        scene.votes.viewers[0] = [viewer(0), viewer(1)];
-        scene.blocked(&[0], &Similarity::identity())[0]
+        scene.level_cloud.viewers[0] = [viewer(0), viewer(1)];
+        scene.occluded(&[0], &Similarity::identity())[0]
     }
 
     const BEFORE: [f64; 3] = [6.0, -15.0, 1.7];
@@ -105,10 +105,10 @@ mod tests {
     fn the_truth_leaves_the_lines_of_sight_free_and_a_place_across_the_houses_does_not() {
         let made = Made::photographed();
         let scene = made.scene(&Offset::default(), Motion::Rigid);
-        let panel = firm(&scene);
+        let point_subset = patch_points(&scene);
         let share = |off: &Offset| {
-            let blocked = scene.blocked(&panel, &made.pose(&scene, off));
-            blocked.iter().filter(|b| **b).count() as f64 / blocked.len() as f64
+            let occluded = scene.occluded(&point_subset, &made.pose(&scene, off));
+            occluded.iter().filter(|b| **b).count() as f64 / occluded.len() as f64
         };
         let off = Offset { shift_m: [9.0, 7.0, 0.0], ..Offset::default() };
         assert_eq!(share(&Offset::default()), 0.0);

@@ -2,10 +2,10 @@
 //!
 //! Question     how much of the cloud would the city have hidden, were a pose true?
 //! Input        points of the cloud, taken evenly over the ground that it covers
-//! Output       the share of them that the city hides, and what that says for the pose in bits, beside the shares under contenders
+//! Output       the share of them that the city occludes, and what that says for the pose in bits, beside the shares under null poses
 //! Method       a point is hidden where the city blocks its lines of sight to two of its cameras or, where no camera is known, where it lies deep under a
-//!              roof or the ground. One house hides all that was seen behind it, so that points do not speak one by one: the share
-//!              speaks once, by its rank among the contenders', a chance p that becomes a likelihood ratio (1 - p + p ln p) / (p ln^2 p)
+//!              roof or the ground. One house occludes all that was seen behind it, so that points do not speak one by one: the share
+//!              speaks once, by its rank among the null poses', a chance p that becomes a likelihood ratio (1 - p + p ln p) / (p ln^2 p)
 //! Source       the mean of all ratios k p^(k-1): Vovk and Wang 2021, section 2; its bound: Sellke, Bayarri, Berger 2001
 //! Why          wrong poses find walls to lie on, but rarely leave the streets free from which they were seen; this does not depend on
 //!              how much of the scene the model knows. A right pose may hide something, too (glass, a new street): it never loses more
@@ -18,7 +18,7 @@ use crate::geometry::{Point3, Similarity};
 use crate::limits::EvidenceLimits;
 use crate::planes::Patches;
 
-/// A point and two of the cameras that saw it (indices into the votes' cameras).
+/// A point and two of the cameras that saw it (indices into the level cloud's cameras).
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     /// Level frame.
@@ -35,11 +35,11 @@ impl SeenPoints {
     pub fn new(scene: &Scene, patches: &Patches, scale: f64, limits: &EvidenceLimits) -> SeenPoints {
         let mut squares: BTreeMap<[i64; 2], Vec<Seen>> = BTreeMap::new();
         for (point, viewers) in patches.points.iter().zip(&patches.viewers) {
-            let position = scene.votes.level_from_sfm.apply(point);
+            let position = scene.level_cloud.level_from_sfm.apply(point);
             let square = [position.x, position.y].map(|x| (x * scale / limits.hidden_square_m).floor() as i64);
             squares.entry(square).or_default().push(Seen { position, viewers: *viewers });
         }
-        let of_square = limits.hidden_probes.div_ceil(squares.len().max(1));
+        let of_square = limits.occlusion_points.div_ceil(squares.len().max(1));
         let evenly = |points: &Vec<Seen>| -> Vec<Seen> {
             let count = of_square.min(points.len());
             let step = points.len() as f64 / count as f64;
@@ -48,14 +48,14 @@ impl SeenPoints {
         SeenPoints(squares.values().flat_map(evenly).collect())
     }
 
-    /// Share of the points that the city hides under a pose.
-    pub fn share_hidden(&self, scene: &Scene, pose: &Similarity) -> f64 {
-        let cameras: Vec<Point3<f64>> = scene.votes.cameras.iter().map(|c| pose.apply(c)).collect();
+    /// Share of the points that the city occludes under a pose.
+    pub fn occluded_share(&self, scene: &Scene, pose: &Similarity) -> f64 {
+        let cameras: Vec<Point3<f64>> = scene.level_cloud.cameras.iter().map(|c| pose.apply(c)).collect();
         let is_hidden = |seen: &&Seen| {
             let place = pose.apply(&seen.position);
             let mut viewers = seen.viewers.iter().flatten().peekable();
             match viewers.peek() {
-                Some(_) => viewers.all(|&c| scene.hides(&place, &cameras[c as usize])),
+                Some(_) => viewers.all(|&c| scene.occludes(&place, &cameras[c as usize])),
                 None => scene.buries(&place),
             }
         };
@@ -63,7 +63,7 @@ impl SeenPoints {
     }
 }
 
-/// What a share says for a pose, bits, beside the shares of contenders (ascending).
+/// What a share says for a pose, bits, beside the shares of null poses (ascending).
 pub fn bits(share: f64, by_chance: &[f64]) -> f64 {
     let less = by_chance.partition_point(|other| *other < share);
     let alike = by_chance.partition_point(|other| *other <= share) - less;
@@ -100,7 +100,7 @@ mod tests {
         let by_chance: Vec<f64> = (0..255).map(|k| f64::from(k) / 255.0).collect();
         assert!(bits(-0.1, &by_chance) > 2.0);
         assert!((bits(2.0, &by_chance) + 1.0).abs() < 0.01);
-        // Where nothing is ever hidden, nothing is learned but little lost; and so where there are no contenders.
+        // Where nothing is ever hidden, nothing is learned but little lost; and so where there are no null poses.
         assert!(bits(0.0, &[0.0; 255]) > -0.7 && bits(0.0, &[]) > -0.7);
     }
 
@@ -109,7 +109,7 @@ mod tests {
         for made in [Made::photographed(), Made::four_houses()] {
             let scene = made.scene(&Offset::default(), Motion::Rigid);
             let seen = SeenPoints::new(&scene, &made.patches, 1.0, &made.limits.evidence);
-            let share = |off: &Offset| seen.share_hidden(&scene, &made.pose(&scene, off));
+            let share = |off: &Offset| seen.occluded_share(&scene, &made.pose(&scene, off));
             // Some points of the clouds are wrong.
             let at_truth = share(&Offset::default());
             let across = share(&Offset { shift_m: [6.0, 5.0, 0.0], ..Offset::default() });

@@ -1,67 +1,69 @@
-//! All poses that may be right, heard by the same witnesses.
+//! All poses that may be right, compared on the same planes of the cloud.
 //!
 //! Question     which pose is right, and what speaks against it?
 //! Input        a scene whose prior reaches beyond the start's, and the poses that the search found within the start's reach
 //! Output       every distinct pose with its evidence: those of the search, and the best that were fitted to other places, which are refined to the end
-//! Method       the contenders of other places give the rates by chance, and the best of them are heard as rivals: who wins within the
+//! Method       the null poses of other places give the rates by chance, and the best of them are heard as rivals: who wins within the
 //!              start's reach is compared with what lies beyond it, too
 
 use rayon::prelude::*;
 
-use super::bits::{Weighed, weigh};
-use super::chance::Chance;
-use super::hidden::SeenPoints;
+use super::bits::{PoseEvidence, weigh};
+use super::chance::NullRates;
+use super::cloud_planes::CloudPlanes;
+use super::occluded::SeenPoints;
 use super::outcomes::{Outcomes, outcomes};
-use super::witnesses::Witnesses;
-use crate::correspondence::{Candidate, Place, Refined, Refiner, Scene, candidate_at, contenders, settled};
+use crate::correspondence::{
+    Basin, Candidate, PoseRefiner, RefinedPose, Scene, candidate_at, null_poses, refined_to_end,
+};
 use crate::geometry::Similarity;
-use crate::limits::ContenderLimits;
+use crate::limits::NullPoseLimits;
 use crate::planes::Patches;
 
 /// A pose that may be right.
 #[derive(Clone, Debug)]
-pub struct Contestant {
+pub struct EvaluatedCandidate {
     pub candidate: Candidate,
-    pub weighed: Weighed,
+    pub weighed: PoseEvidence,
     /// Whether it was fitted to another place than the search's, and is not among its candidates.
     pub by_chance: bool,
 }
 
 /// What judges the poses of one cloud in one city.
-pub struct Contest<'a> {
+pub struct CandidateEvaluation<'a> {
     scene: &'a Scene<'a>,
-    witnesses: Witnesses,
+    cloud_planes: CloudPlanes,
     seen: SeenPoints,
-    chance: Chance,
-    /// The best contenders, made as sharp as the search's candidates.
-    pub others: Vec<Contestant>,
-    /// Evidence of all contenders, the largest first.
+    chance: NullRates,
+    /// The best null poses, made as sharp as the search's candidates.
+    pub others: Vec<EvaluatedCandidate>,
+    /// Evidence of all null poses, the largest first.
     pub by_chance: Vec<f64>,
 }
 
-impl<'a> Contest<'a> {
+impl<'a> CandidateEvaluation<'a> {
     /// `scene` reaches beyond the start, and is of the cloud of `patches`; `answer` is the search's best pose.
-    pub fn new(scene: &'a Scene<'a>, patches: &Patches, answer: &Refined, seed: u64) -> Contest<'a> {
+    pub fn new(scene: &'a Scene<'a>, patches: &Patches, answer: &RefinedPose, seed: u64) -> CandidateEvaluation<'a> {
         let limits = scene.limits;
-        let refiner = Refiner::new(scene);
-        let place = Place::of(answer, limits.refinement.held_m, &limits.contenders);
-        let fitted = contenders(&refiner, &place, seed, &limits.contenders);
+        let refiner = PoseRefiner::new(scene);
+        let place = Basin::of(answer, limits.refinement.most_sigma_m, &limits.null_poses);
+        let fitted = null_poses(&refiner, &place, seed, &limits.null_poses);
         let scale = answer.city_from_level.scale;
-        let witnesses = Witnesses::new(scene, scale, &limits.evidence);
+        let cloud_planes = CloudPlanes::new(scene, scale, &limits.evidence);
         let seen = SeenPoints::new(scene, patches, scale, &limits.evidence);
-        let meet = |c: &Refined| {
+        let meet = |c: &RefinedPose| {
             let pose = &c.city_from_level;
-            (outcomes(scene, &witnesses, pose, &limits.evidence), seen.share_hidden(scene, pose))
+            (outcomes(scene, &cloud_planes, pose, &limits.evidence), seen.occluded_share(scene, pose))
         };
         let met: Vec<(Outcomes, f64)> = fitted.par_iter().map(meet).collect();
         let (met, hidden): (Vec<Outcomes>, Vec<f64>) = met.into_iter().unzip();
-        let chance = Chance::new(&witnesses, &met, hidden.clone(), limits.evidence.unseen_contenders);
+        let chance = NullRates::new(&cloud_planes, &met, hidden.clone(), limits.evidence.unseen_null_poses);
         let mut ranked: Vec<(f64, Similarity)> = (met.iter().zip(&hidden).zip(&fitted))
-            .map(|((met, hidden), c)| (weigh(&witnesses, met, *hidden, &chance).bits, c.city_from_level))
+            .map(|((met, hidden), c)| (weigh(&cloud_planes, met, *hidden, &chance).bits, c.city_from_level))
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let by_chance = ranked.iter().map(|(bits, _)| *bits).collect();
-        let mut contest = Contest { scene, witnesses, seen, chance, others: Vec::new(), by_chance };
+        let mut contest = CandidateEvaluation { scene, cloud_planes, seen, chance, others: Vec::new(), by_chance };
         // Refinement to the end gains some bits: who is twice the margin behind cannot become a rival.
         let least = contest.weigh(&answer.city_from_level).bits - 2.0 * limits.verdict.margin_bits();
         ranked.retain(|(bits, _)| *bits >= least);
@@ -70,32 +72,37 @@ impl<'a> Contest<'a> {
     }
 
     /// The evidence of a pose.
-    pub fn weigh(&self, pose: &Similarity) -> Weighed {
-        let met = outcomes(self.scene, &self.witnesses, pose, &self.scene.limits.evidence);
-        weigh(&self.witnesses, &met, self.seen.share_hidden(self.scene, pose), &self.chance)
+    pub fn weigh(&self, pose: &Similarity) -> PoseEvidence {
+        let met = outcomes(self.scene, &self.cloud_planes, pose, &self.scene.limits.evidence);
+        weigh(&self.cloud_planes, &met, self.seen.occluded_share(self.scene, pose), &self.chance)
     }
 
     /// How many planes in space can speak for a pose.
-    pub fn witnesses(&self) -> usize {
-        self.witnesses.class.len()
+    pub fn cloud_planes(&self) -> usize {
+        self.cloud_planes.class.len()
     }
 
-    /// The best distinct contenders, refined to the end.
-    fn sharpened(&self, refiner: &Refiner, ranked: &[(f64, Similarity)], answer: &Place) -> Vec<Contestant> {
-        let ContenderLimits { heard: most, .. } = self.scene.limits.contenders;
-        let mut heard: Vec<Place> = Vec::new();
+    /// The best distinct null poses, refined to the end.
+    fn sharpened(
+        &self,
+        refiner: &PoseRefiner,
+        ranked: &[(f64, Similarity)],
+        answer: &Basin,
+    ) -> Vec<EvaluatedCandidate> {
+        let NullPoseLimits { heard: most, .. } = self.scene.limits.null_poses;
+        let mut heard: Vec<Basin> = Vec::new();
         for (_, pose) in ranked {
             if heard.len() < most && !heard.iter().any(|other| other.has(pose)) {
-                heard.push(Place::around(refiner, pose));
+                heard.push(Basin::around(refiner, pose));
             }
         }
-        let to_the_end = |place: &Place| {
-            let refined = settled(refiner, place.pose());
+        let to_the_end = |place: &Basin| {
+            let refined = refined_to_end(refiner, place.pose());
             let candidate = Candidate { refined, ..candidate_at(refiner, place.pose()) };
             let weighed = self.weigh(&candidate.refined.city_from_level);
-            Contestant { candidate, weighed, by_chance: true }
+            EvaluatedCandidate { candidate, weighed, by_chance: true }
         };
-        let sharp: Vec<Contestant> = heard.par_iter().map(to_the_end).collect();
+        let sharp: Vec<EvaluatedCandidate> = heard.par_iter().map(to_the_end).collect();
         sharp.into_iter().filter(|c| !answer.has(&c.candidate.refined.city_from_level)).collect()
     }
 }
@@ -117,8 +124,8 @@ mod tests {
         made.scene_with(&Offset::default(), sigmas, Motion::Similarity, &upright)
     }
 
-    fn answer(scene: &Scene, made: &Made, off: &Offset) -> Refined {
-        settled(&Refiner::new(scene), &made.pose(scene, off))
+    fn answer(scene: &Scene, made: &Made, off: &Offset) -> RefinedPose {
+        refined_to_end(&PoseRefiner::new(scene), &made.pose(scene, off))
     }
 
     #[test]
@@ -126,7 +133,7 @@ mod tests {
         for made in [Made::four_houses(), Made::photographed()] {
             let scene = wide(&made);
             let truth = answer(&scene, &made, &Offset::default());
-            let contest = Contest::new(&scene, &made.patches, &truth, 1);
+            let contest = CandidateEvaluation::new(&scene, &made.patches, &truth, 1);
             let bits = contest.weigh(&truth.city_from_level).bits;
             assert!(bits > 20.0, "{bits}");
             assert!(!contest.by_chance.is_empty() && contest.by_chance.is_sorted_by(|a, b| a >= b));
@@ -144,11 +151,11 @@ mod tests {
         let made = Made::four_houses();
         let scene = wide(&made);
         let wrong = answer(&scene, &made, &Offset { shift_m: [9.0, -7.0, 0.0], heading_rad: 0.3, ..Offset::default() });
-        let contest = Contest::new(&scene, &made.patches, &wrong, 1);
+        let contest = CandidateEvaluation::new(&scene, &made.patches, &wrong, 1);
         assert!(contest.weigh(&wrong.city_from_level).bits < 10.0);
         let best = contest.others.iter().map(|other| other.weighed.bits).fold(f64::NEG_INFINITY, f64::max);
         assert!(best > contest.weigh(&wrong.city_from_level).bits, "{best}");
-        let nearest_m = |c: &Contestant| made.error(&scene, &c.candidate.refined.city_from_level).level_m;
+        let nearest_m = |c: &EvaluatedCandidate| made.error(&scene, &c.candidate.refined.city_from_level).level_m;
         let found = contest.others.iter().any(|other| nearest_m(other) < 0.1 && other.by_chance);
         assert!(found, "{:?}", contest.others.iter().map(nearest_m).collect::<Vec<_>>());
     }
@@ -157,14 +164,17 @@ mod tests {
     fn what_leads_to_the_answer_but_for_an_open_height_is_no_contender() {
         let made = Made::walls();
         let scene = wide(&made);
-        let refiner = Refiner::new(&scene);
-        let truth =
-            refiner.sharpen(&(0..scene.votes.firm as u32).collect::<Vec<_>>(), &made.truth(&scene), scene.unit_m);
+        let refiner = PoseRefiner::new(&scene);
+        let truth = refiner.sharpen(
+            &(0..scene.level_cloud.patch_points as u32).collect::<Vec<_>>(),
+            &made.truth(&scene),
+            scene.gate_unit_m,
+        );
         let limits = &made.limits;
-        let place = Place::of(&truth, limits.refinement.held_m, &limits.contenders);
+        let place = Basin::of(&truth, limits.refinement.most_sigma_m, &limits.null_poses);
         let at = |shift_m: [f64; 3]| made.pose(&scene, &Offset { shift_m, ..Offset::default() });
         assert!(place.has(&at([0.0, 0.0, 5.0])) && place.has(&at([0.5, 0.5, -4.0])));
         assert!(!place.has(&at([3.0, 0.0, 0.0])));
-        assert!(!Place::around(&refiner, &truth.city_from_level).has(&at([0.0, 0.0, 5.0])));
+        assert!(!Basin::around(&refiner, &truth.city_from_level).has(&at([0.0, 0.0, 5.0])));
     }
 }

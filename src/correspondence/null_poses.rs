@@ -10,42 +10,44 @@
 
 use rayon::prelude::*;
 
-use super::economy::{cheapest, prospects};
 use super::pose_search::PoseSearch;
-use super::refine::{Refined, Refiner};
+use super::refine::{PoseRefiner, RefinedPose};
 use super::sampler::Sampler;
 use super::search::sought;
+use super::solver_choice::{cheapest, solver_costs};
 use crate::geometry::Similarity;
-use crate::limits::ContenderLimits;
+use crate::limits::NullPoseLimits;
 use crate::robust::{Chart, Direction, Problem, Random};
 
 /// So many poses at distinct places, none of which is that of `answer`; fewer where the samples allow no more.
-pub fn contenders(refiner: &Refiner, answer: &Place, seed: u64, limits: &ContenderLimits) -> Vec<Refined> {
+pub fn null_poses(refiner: &PoseRefiner, answer: &Basin, seed: u64, limits: &NullPoseLimits) -> Vec<RefinedPose> {
     let scene = refiner.scene;
-    let (sampler, sought, panel) = (Sampler::new(scene), sought(scene), scene.votes.panel(limits.ranking_probes));
-    let with = |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, panel: &panel };
+    let (sampler, sought, point_subset) =
+        (Sampler::new(scene), sought(scene), scene.level_cloud.point_subset(limits.ranking_points));
+    let with =
+        |configuration| PoseSearch { scene, sampler: &sampler, sought, configuration, point_subset: &point_subset };
     let searches: Vec<PoseSearch> = sought.configurations().iter().map(with).collect();
-    let Some(configuration) = cheapest(&prospects(&searches, &scene.limits.search), &scene.limits.search) else {
+    let Some(configuration) = cheapest(&solver_costs(&searches, &scene.limits.search), &scene.limits.search) else {
         return Vec::new();
     };
     let search = with(&configuration);
-    let refining = scene.votes.panel(limits.refining_probes);
-    let gates_m: Vec<f64> = limits.gates_units.iter().map(|gate| gate * scene.unit_m).collect();
+    let refining = scene.level_cloud.point_subset(limits.refining_points);
+    let gates_m: Vec<f64> = limits.gates_units.iter().map(|gate| gate * scene.gate_unit_m).collect();
     let is_elsewhere = |pose: &Similarity| !answer.has(pose);
     let of_batch = |batch: u64| {
         let best = best_of(&search, seed, batch, limits.samples, is_elsewhere)?;
         let refined = refiner.refine(&refining, &best, &gates_m);
         is_elsewhere(&refined.city_from_level).then_some(refined)
     };
-    let mut places: Vec<Place> = Vec::with_capacity(limits.count);
-    let mut found: Vec<Refined> = Vec::with_capacity(limits.count);
+    let mut places: Vec<Basin> = Vec::with_capacity(limits.count);
+    let mut found: Vec<RefinedPose> = Vec::with_capacity(limits.count);
     for round in 0..limits.most_rounds {
         let first = round * limits.count as u64;
         let batches = first..first + limits.count as u64;
-        let round: Vec<Option<Refined>> = batches.into_par_iter().map(of_batch).collect();
+        let round: Vec<Option<RefinedPose>> = batches.into_par_iter().map(of_batch).collect();
         for refined in round.into_iter().flatten() {
             if found.len() < limits.count && !places.iter().any(|place| place.has(&refined.city_from_level)) {
-                places.push(Place::around(refiner, &refined.city_from_level));
+                places.push(Basin::around(refiner, &refined.city_from_level));
                 found.push(refined);
             }
         }
@@ -84,26 +86,26 @@ fn best_of(
 const STREAMS_OF_SEARCH: u64 = 1 << 32;
 
 /// The place of an answer, as far as the data hold it: what leads there is no other place.
-pub struct Place<'a> {
+pub struct Basin<'a> {
     pose: Similarity,
     chart: Chart,
     /// The directions along which nothing holds the answer.
     open: Vec<Direction>,
-    limits: &'a ContenderLimits,
+    limits: &'a NullPoseLimits,
 }
 
-impl<'a> Place<'a> {
-    /// The place of a refined pose; directions that are held worse than `held_m` are open.
-    pub fn of(answer: &Refined, held_m: f64, limits: &'a ContenderLimits) -> Place<'a> {
+impl<'a> Basin<'a> {
+    /// The place of a refined pose; directions that are held worse than `most_sigma_m` are open.
+    pub fn of(answer: &RefinedPose, most_sigma_m: f64, limits: &'a NullPoseLimits) -> Basin<'a> {
         let spectrum = answer.chart.spectrum(&answer.equations.full());
-        let open = spectrum.directions().iter().filter(|d| d.sigma_m > held_m).copied().collect();
-        Place { pose: answer.city_from_level, chart: answer.chart, open, limits }
+        let open = spectrum.directions().iter().filter(|d| d.sigma_m > most_sigma_m).copied().collect();
+        Basin { pose: answer.city_from_level, chart: answer.chart, open, limits }
     }
 
     /// The place of a pose of which nothing is open.
-    pub fn around(refiner: &Refiner<'a>, pose: &Similarity) -> Place<'a> {
-        let Refined { chart, .. } = refiner.assess(&[], pose, 0.0);
-        Place { pose: *pose, chart, open: Vec::new(), limits: &refiner.scene.limits.contenders }
+    pub fn around(refiner: &PoseRefiner<'a>, pose: &Similarity) -> Basin<'a> {
+        let RefinedPose { chart, .. } = refiner.assess(&[], pose, 0.0);
+        Basin { pose: *pose, chart, open: Vec::new(), limits: &refiner.scene.limits.null_poses }
     }
 
     pub fn pose(&self) -> &Similarity {

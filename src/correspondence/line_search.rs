@@ -2,9 +2,9 @@
 //!
 //! Question     where along a direction does the pose explain most?
 //! Method       the pose is moved by each offset along the direction and valued, in parallel; the best wins, the nearest of equals.
-//!              Three walks use it: along what the data hold loosely, by the score ([`slide`]); along all directions at once into
-//!              neighbouring basins, each place refined first ([`hop`]; basin hopping, Wales and Doye 1997, with fixed moves instead of random ones);
-//!              and along what nothing holds, by the planes that find points ([`settle`])
+//!              Three walks use it: along what the data hold loosely, by the score ([`walk_weak_directions`]); along all directions at once into
+//!              neighbouring basins, each place refined first ([`basin_hopping`]; basin hopping, Wales and Doye 1997, with fixed moves instead of random ones);
+//!              and along what nothing holds, by the planes that find points ([`walk_free_directions`])
 //! Why          a wall's top and foot tell the height softly, which says nothing to a least-squares step; a prior inside Gauss-Newton
 //!              would drag the pose off its facets. And facades have several parallel planes some decimetres apart: a cloud may
 //!              settle with some of its patches one plane off, held as firmly as at the right place
@@ -12,7 +12,7 @@
 use rayon::prelude::*;
 
 use super::prior::Prior;
-use super::refine::{Refined, Refiner};
+use super::refine::{PoseRefiner, RefinedPose};
 use super::scene::Scene;
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Direction, Spectrum};
@@ -53,10 +53,10 @@ pub(super) fn walk(
     places.into_iter().flatten().fold(from, |best, place| if place.0 > best.0 { place } else { best })
 }
 
-/// The pose after a walk along each loose direction in turn, by the score of `panel` within `gate_m`.
-pub fn slide(
+/// The pose after a walk along each loose direction in turn, by the score of `point_subset` within `gate_m`.
+pub fn walk_weak_directions(
     scene: &Scene,
-    panel: &[u32],
+    point_subset: &[u32],
     chart: &Chart,
     spectrum: &Spectrum,
     pose: &Similarity,
@@ -64,7 +64,7 @@ pub fn slide(
 ) -> Similarity {
     let limits = &scene.limits.walk;
     let step_m = limits.step_of_gate * gate_m;
-    let value = |pose: &Similarity| (scene.score(panel, pose, gate_m), *pose);
+    let value = |pose: &Similarity| (scene.score(point_subset, pose, gate_m), *pose);
     let mut loose = spectrum.directions().iter().filter(|d| d.sigma_m > limits.loose_m).peekable();
     if loose.peek().is_none() {
         return *pose;
@@ -78,16 +78,16 @@ pub fn slide(
     walked.1
 }
 
-/// The best pose about `pose` in its own basin and those beside it, by the score of `panel`.
-pub fn hop(refiner: &Refiner, panel: &[u32], pose: &Similarity) -> Similarity {
+/// The best pose about `pose` in its own basin and those beside it, by the score of `point_subset`.
+pub fn basin_hopping(refiner: &PoseRefiner, point_subset: &[u32], pose: &Similarity) -> Similarity {
     let scene = refiner.scene;
-    let (limits, unit_m) = (&scene.limits.walk, scene.unit_m);
-    let gates_m = limits.basin_gates_units.map(|g| g * unit_m);
+    let (limits, gate_unit_m) = (&scene.limits.walk, scene.gate_unit_m);
+    let gates_m = limits.basin_gates_units.map(|g| g * gate_unit_m);
     let refined = |pose: &Similarity| {
-        let refined = refiner.refine(panel, pose, &gates_m);
-        ((scene.score(panel, &refined.city_from_level, unit_m), refined.city_from_level), refined)
+        let refined = refiner.refine(point_subset, pose, &gates_m);
+        ((scene.score(point_subset, &refined.city_from_level, gate_unit_m), refined.city_from_level), refined)
     };
-    let offsets_m = limits.basin_moves_units.map(|units| units * unit_m).to_vec();
+    let offsets_m = limits.basin_moves_units.map(|units| units * gate_unit_m).to_vec();
     let (mut best, mut from) = refined(pose);
     for _ in 0..limits.most_rounds {
         let begun = best;
@@ -104,65 +104,75 @@ pub fn hop(refiner: &Refiner, panel: &[u32], pose: &Similarity) -> Similarity {
 }
 
 /// Moves `refined`, made without loose points, along what it leaves loose to where most planes find points, as far as `reach_m`, and
-/// sharpens with all of `panel`.
+/// sharpens with all of `point_subset`.
 ///
-/// The few points of a grazed roof that alone hold a height count for nothing among the votes of the walls; but by the
+/// The few points of a grazed roof that alone hold a height count for nothing among the points of the walls; but by the
 /// root of its points every plane has a say, and at the right height several find theirs at once.
-pub fn settle(refiner: &Refiner, panel: &[u32], refined: Refined, gate_m: f64, reach_m: f64) -> Refined {
+pub fn walk_free_directions(
+    refiner: &PoseRefiner,
+    point_subset: &[u32],
+    refined: RefinedPose,
+    gate_m: f64,
+    reach_m: f64,
+) -> RefinedPose {
     // A finer step than the gate of a loose point is wide: none may fall between.
     let step_m = refiner.point_sigma_m;
     let steps = (reach_m / step_m).ceil() as i32;
     let spectrum = refined.chart.spectrum(&refined.equations.full());
-    let held_m = refiner.scene.limits.refinement.held_m;
+    let most_sigma_m = refiner.scene.limits.refinement.most_sigma_m;
     let mut pose = refined.city_from_level;
-    for direction in spectrum.directions().iter().filter(|d| d.sigma_m > held_m) {
-        let free = without_unmoved(refiner, panel, &refined.chart, &pose, direction, gate_m);
+    for direction in spectrum.directions().iter().filter(|d| d.sigma_m > most_sigma_m) {
+        let free = without_unmoved(refiner, point_subset, &refined.chart, &pose, direction, gate_m);
         let support = |pose: &Similarity| (planes_with_points(refiner, &free, pose, gate_m), *pose);
         let stride = Stride { direction: *direction, offsets_m: Stride::even(step_m, steps) };
         pose = walk(&refiner.scene.prior, &refined.chart, support(&pose), &[stride], support).1;
     }
-    refiner.sharpen(panel, &pose, gate_m)
+    refiner.sharpen(point_subset, &pose, gate_m)
 }
 
 /// Points on planes, each plane counting by the root of its points.
-pub(super) fn planes_with_points(refiner: &Refiner, panel: &[u32], pose: &Similarity, gate_m: f64) -> f64 {
-    let rows = refiner.probes_on_planes(panel, pose, gate_m);
+pub(super) fn planes_with_points(refiner: &PoseRefiner, point_subset: &[u32], pose: &Similarity, gate_m: f64) -> f64 {
+    let rows = refiner.point_plane_matches(point_subset, pose, gate_m);
     rows.chunk_by(|a, b| a.hit.plane == b.hit.plane).map(|p| p.iter().map(|r| r.weight).sum::<f64>().sqrt()).sum()
 }
 
-/// The panel without the loose points on planes that a motion along `direction` does not leave: they are explained already, and
+/// The point subset without the loose points on planes that a motion along `direction` does not leave: they are explained already, and
 /// stray ones beside a wall would hold a roof that is not there.
 fn without_unmoved(
-    refiner: &Refiner,
-    panel: &[u32],
+    refiner: &PoseRefiner,
+    point_subset: &[u32],
     chart: &Chart,
     pose: &Similarity,
     direction: &Direction,
     gate_m: f64,
 ) -> Vec<u32> {
     let unmoved = refiner.scene.limits.walk.unmoved_share;
-    let mut stays = vec![false; refiner.scene.votes.probes.len()];
-    for row in refiner.probes_on_planes(panel, pose, gate_m) {
-        stays[row.probe as usize] = chart.row(&row.place, &row.hit.normal).dot(&direction.unit).abs() < unmoved;
+    let mut stays = vec![false; refiner.scene.level_cloud.sample_points.len()];
+    for row in refiner.point_plane_matches(point_subset, pose, gate_m) {
+        stays[row.sample_point as usize] = chart.row(&row.place, &row.hit.normal).dot(&direction.unit).abs() < unmoved;
     }
-    panel.iter().copied().filter(|&i| (i as usize) < refiner.scene.votes.firm || !stays[i as usize]).collect()
+    point_subset
+        .iter()
+        .copied()
+        .filter(|&i| (i as usize) < refiner.scene.level_cloud.patch_points || !stays[i as usize])
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::correspondence::test_scene::{Made, all, firm, walls_alone};
+    use crate::correspondence::test_scene::{Made, all, patch_points, walls_alone};
     use crate::geometry::{StartSigmas, Vector3};
     use crate::planes::Upright;
     use crate::robust::{Motion, Vector7};
     use crate::synthetic::{Block, CloudOptions, House, Offset, Plinth, Surface};
 
-    /// Slides a pose as a stage of the contest does: along what the panel leaves loose.
-    fn slid(refiner: &Refiner, pose: &Similarity) -> Similarity {
-        let (scene, gate_m) = (refiner.scene, refiner.scene.unit_m);
-        let held = refiner.assess(&firm(scene), pose, gate_m);
+    /// Walks a pose as a stage of the candidates does: along what the point subset leaves loose.
+    fn slid(refiner: &PoseRefiner, pose: &Similarity) -> Similarity {
+        let (scene, gate_m) = (refiner.scene, refiner.scene.gate_unit_m);
+        let held = refiner.assess(&patch_points(scene), pose, gate_m);
         let spectrum = held.chart.spectrum(&held.equations.full());
-        slide(scene, &scene.votes.panel(1500), &held.chart, &spectrum, pose, gate_m)
+        walk_weak_directions(scene, &scene.level_cloud.point_subset(1500), &held.chart, &spectrum, pose, gate_m)
     }
 
     fn raised(made: &Made, scene: &Scene, rise_m: f64) -> Similarity {
@@ -175,10 +185,10 @@ mod tests {
         for motion in [Motion::Rigid, Motion::Similarity] {
             let scene = made.scene(&Offset::default(), motion);
             for rise_m in [-3.0, -1.2, 0.5, 2.0] {
-                let found = slid(&Refiner::new(&scene), &raised(&made, &scene, rise_m));
+                let found = slid(&PoseRefiner::new(&scene), &raised(&made, &scene, rise_m));
                 let left_m = made.rise_m(&scene, &found);
-                // Within the gate of a vote, which says little of its last part.
-                assert!(left_m.abs() < scene.unit_m, "{left_m} of {rise_m}");
+                // Within the gate of the score, which says little of its last part.
+                assert!(left_m.abs() < scene.gate_unit_m, "{left_m} of {rise_m}");
             }
         }
     }
@@ -189,9 +199,9 @@ mod tests {
         let made = Made::cloud(Block::four_houses().with_ground(true), &seen);
         let scene = made.scene(&Offset::default(), Motion::Rigid);
         // Beyond the gate, where the ground holds nothing.
-        let found = slid(&Refiner::new(&scene), &raised(&made, &scene, 1.0));
+        let found = slid(&PoseRefiner::new(&scene), &raised(&made, &scene, 1.0));
         let left_m = made.rise_m(&scene, &found);
-        let step_m = made.limits.walk.step_of_gate * scene.unit_m;
+        let step_m = made.limits.walk.step_of_gate * scene.gate_unit_m;
         assert!(left_m.abs() < step_m, "{left_m}");
     }
 
@@ -200,7 +210,7 @@ mod tests {
         let made = Made::four_houses();
         let scene = made.scene(&Offset::default(), Motion::Similarity);
         let off = made.pose(&scene, &Offset { shift_m: [0.1, -0.1, 0.1], ..Offset::default() });
-        assert_eq!(slid(&Refiner::new(&scene), &off), off);
+        assert_eq!(slid(&PoseRefiner::new(&scene), &off), off);
     }
 
     #[test]
@@ -214,18 +224,18 @@ mod tests {
         let boxes = [House::flat([40.0, 10.0, 8.0]), House::flat([40.0, 0.5, 4.0]).at([0.0, -0.5, 0.0])];
         let made = Made::new(Block::new(boxes.to_vec()).with_ground(true), survey);
         let scene = made.scene(&Offset::default(), Motion::Rigid);
-        let refiner = Refiner::new(&scene);
-        let panel = scene.votes.panel(1500);
+        let refiner = PoseRefiner::new(&scene);
+        let point_subset = scene.level_cloud.point_subset(1500);
         let shifted = made.pose(&scene, &Offset { shift_m: [0.0, 0.5, 0.0], ..Offset::default() });
         let stuck = refiner
-            .refine(&panel, &shifted, &scene.limits.walk.basin_gates_units.map(|g| g * scene.unit_m))
+            .refine(&point_subset, &shifted, &scene.limits.walk.basin_gates_units.map(|g| g * scene.gate_unit_m))
             .city_from_level;
         let off = |pose: &Similarity| made.error(&scene, pose).level_m;
         assert!(off(&stuck) > 0.4, "{}", off(&stuck));
-        let hopped = hop(&refiner, &panel, &stuck);
+        let hopped = basin_hopping(&refiner, &point_subset, &stuck);
         assert!(off(&hopped) < 0.02, "{}", off(&hopped));
         // And from its own place it goes nowhere.
-        let stayed = hop(&refiner, &panel, &hopped);
+        let stayed = basin_hopping(&refiner, &point_subset, &hopped);
         assert!(off(&stayed) < 0.02, "{}", off(&stayed));
     }
 
@@ -234,7 +244,7 @@ mod tests {
         let made = Made::walls();
         let scene = made.scene(&Offset::default(), Motion::Rigid);
         let pose = scene.prior.expected();
-        let chart = Refiner::new(&scene).assess(&[], &pose, 0.0).chart;
+        let chart = PoseRefiner::new(&scene).assess(&[], &pose, 0.0).chart;
         let up = Direction { unit: Vector7::from_fn(|i, _| if i == 5 { 1.0 } else { 0.0 }), sigma_m: 1.0 };
         let stride = || Stride { direction: up, offsets_m: Stride::even(0.5, 6) };
         let rise_m = |pose: &Similarity| pose.translation.z - scene.prior.center_in_city.z;
@@ -257,9 +267,9 @@ mod tests {
         for shift_m in [[0.0, 0.0, 3.0], [0.0, 0.0, -3.0], [1.2, -0.8, 2.0]] {
             let start = Offset { shift_m, ..Offset::default() };
             let scene = made.scene_with(&start, sigmas, Motion::Rigid, &upright);
-            let refiner = Refiner::new(&scene);
+            let refiner = PoseRefiner::new(&scene);
             let pose = scene.prior.expected();
-            let held = refiner.assess(&firm(&scene), &pose, scene.unit_m);
+            let held = refiner.assess(&patch_points(&scene), &pose, scene.gate_unit_m);
             let valued = |p: &Similarity| ((p.translation - pose.translation).norm(), *p);
             let along =
                 |k: usize| Direction { unit: Vector7::from_fn(|i, _| f64::from(u8::from(i == k))), sigma_m: 1.0 };
@@ -269,8 +279,11 @@ mod tests {
             assert!((farthest.0 - 1.2).abs() < 1e-9, "{}", farthest.0);
             for (name, found) in [
                 ("slide", slid(&refiner, &pose)),
-                ("hop", hop(&refiner, &scene.votes.panel(1000), &pose)),
-                ("settle", settle(&refiner, &all(&scene), held.clone(), scene.unit_m, 4.0).city_from_level),
+                ("hop", basin_hopping(&refiner, &scene.level_cloud.point_subset(1000), &pose)),
+                (
+                    "settle",
+                    walk_free_directions(&refiner, &all(&scene), held.clone(), scene.gate_unit_m, 4.0).city_from_level,
+                ),
             ] {
                 assert!(scene.prior.reaches(&found), "{name}: {found:?} from {pose:?}");
                 assert_eq!(found.scale.to_bits(), 1f64.to_bits());
@@ -284,9 +297,11 @@ mod tests {
             for (k, scale) in [0.96, 1.0, 1.03].into_iter().enumerate() {
                 let start = Offset { shift_m: [0.4, -0.5, 0.6 * k as f64], scale, ..Offset::default() };
                 let scene = made.scene(&start, Motion::Rigid);
-                let refiner = Refiner::new(&scene);
+                let refiner = PoseRefiner::new(&scene);
                 let pose = scene.prior.expected();
-                for found in [slid(&refiner, &pose), hop(&refiner, &scene.votes.panel(1000), &pose)] {
+                for found in
+                    [slid(&refiner, &pose), basin_hopping(&refiner, &scene.level_cloud.point_subset(1000), &pose)]
+                {
                     assert_eq!(found.scale.to_bits(), 1f64.to_bits(), "{found:?}");
                 }
             }

@@ -18,7 +18,7 @@ use crate::solvers::Configuration;
 
 /// What a pilot tells of one configuration.
 #[derive(Clone, Copy, Debug)]
-pub struct Prospect {
+pub struct SolverCost {
     pub configuration: Configuration,
     /// Share of the draws that the data could feed.
     pub fed: f64,
@@ -29,17 +29,17 @@ pub struct Prospect {
 }
 
 /// A pilot ends once so many samples of the first configuration, which has the fewest planes, have a pose: enough to tell
-/// costs that differ by some tens of per cent ...
+/// costs that differ by some tens of per cent.
 const PILOT_SAMPLES: usize = 64;
-/// ... or after so many draws: as many as the shortest search.
+/// The pilot ends after so many draws at the latest: as many as the shortest search.
 const PILOT_DRAWS: u64 = 8192;
 /// Seed of the pilot: its own, so that the choice does not hang on the user's.
 const PILOT_SEED: u64 = 0;
 
 /// What a pilot tells of each search.
-pub fn prospects(searches: &[PoseSearch], limits: &SearchLimits) -> Vec<Prospect> {
+pub fn solver_costs(searches: &[PoseSearch], limits: &SearchLimits) -> Vec<SolverCost> {
     let draws = searches.first().map_or(0, draws_of_pilot);
-    searches.iter().map(|search| Prospect::of(search, draws, limits.on_city)).collect()
+    searches.iter().map(|search| SolverCost::of(search, draws, limits.on_city)).collect()
 }
 
 fn draws_of_pilot(search: &PoseSearch) -> u64 {
@@ -55,8 +55,8 @@ fn draws_of_pilot(search: &PoseSearch) -> u64 {
         .map_or(PILOT_DRAWS, |last| last + 1)
 }
 
-impl Prospect {
-    fn of(search: &PoseSearch, draws: u64, on_city: f64) -> Prospect {
+impl SolverCost {
+    fn of(search: &PoseSearch, draws: u64, on_city: f64) -> SolverCost {
         let (mut fed, mut found, mut chance) = (0, 0, 0.0);
         let mut poses = Vec::new();
         for draw in 0..draws {
@@ -68,7 +68,7 @@ impl Prospect {
             chance += drawn.filter(|_| !poses.is_empty()).unwrap_or(0.0);
         }
         let per_draw = |count: f64| count / draws as f64;
-        Prospect {
+        SolverCost {
             configuration: *search.configuration,
             fed: per_draw(fed as f64),
             poses: per_draw(found as f64),
@@ -86,8 +86,8 @@ impl Prospect {
 }
 
 /// The configuration whose right sample is expected to cost least.
-pub fn cheapest(prospects: &[Prospect], limits: &SearchLimits) -> Option<Configuration> {
-    let costs = prospects.iter().filter_map(|p| Some((p.expected_us(limits)?, p.configuration)));
+pub fn cheapest(solver_costs: &[SolverCost], limits: &SearchLimits) -> Option<Configuration> {
+    let costs = solver_costs.iter().filter_map(|p| Some((p.expected_us(limits)?, p.configuration)));
     costs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, configuration)| configuration)
 }
 
@@ -98,44 +98,45 @@ mod tests {
     use crate::solvers::SIMILARITY;
 
     /// (3,2,1,1), (3,1,1,1,1), (2,2,2,1) of a similarity, fed and right alike.
-    fn prospects() -> [Prospect; 3] {
-        [0, 1, 2].map(|k| Prospect { configuration: SIMILARITY[k], fed: 0.5, poses: 0.2, chance: 0.01 })
+    fn solver_costs() -> [SolverCost; 3] {
+        [0, 1, 2].map(|k| SolverCost { configuration: SIMILARITY[k], fed: 0.5, poses: 0.2, chance: 0.01 })
     }
 
-    fn chosen(prospects: &[Prospect]) -> String {
-        cheapest(prospects, &Limits::default().search).map_or(String::new(), |configuration| configuration.to_string())
+    fn chosen(solver_costs: &[SolverCost]) -> String {
+        cheapest(solver_costs, &Limits::default().search)
+            .map_or(String::new(), |configuration| configuration.to_string())
     }
 
     #[test]
     fn fewer_planes_win_where_all_else_is_equal() {
-        let [four, five, _] = prospects();
+        let [four, five, _] = solver_costs();
         assert_eq!(chosen(&[five, four]), "(3,2,1,1)");
     }
 
     #[test]
     fn the_faster_solve_wins_where_the_planes_are_as_many() {
-        let [fast, _, slow] = prospects();
+        let [fast, _, slow] = solver_costs();
         assert_eq!(chosen(&[slow, fast]), "(3,2,1,1)");
     }
 
     #[test]
     fn a_chance_that_is_better_by_more_than_the_cost_wins() {
-        let [fast, _, slow] = prospects();
-        let luckier = Prospect { chance: 2.0 * fast.chance, ..slow };
+        let [fast, _, slow] = solver_costs();
+        let luckier = SolverCost { chance: 2.0 * fast.chance, ..slow };
         assert_eq!(chosen(&[fast, luckier]), "(2,2,2,1)");
     }
 
     #[test]
     fn a_configuration_that_the_data_cannot_feed_is_never_chosen() {
-        let [fast, five, slow] = prospects();
-        let unfed = Prospect { fed: 0.0, poses: 0.0, chance: 0.0, ..fast };
+        let [fast, five, slow] = solver_costs();
+        let unfed = SolverCost { fed: 0.0, poses: 0.0, chance: 0.0, ..fast };
         assert_eq!(chosen(&[unfed, five, slow]), "(3,1,1,1,1)");
         assert_eq!(chosen(&[unfed]), "");
     }
 
     #[test]
     fn the_expected_cost_is_that_of_a_trial_over_the_chance_of_success() {
-        let [four, ..] = prospects();
+        let [four, ..] = solver_costs();
         let limits = Limits::default().search;
         let trial = 4.0 * limits.pair_us + 0.5 * SIMILARITY[0].solve_us + 0.2 * limits.score_us;
         assert!((four.expected_us(&limits).unwrap() - trial / 0.01).abs() < 1e-9);

@@ -4,6 +4,7 @@
 mod belief;
 mod candidates;
 mod cliques;
+mod mover;
 mod null_poses;
 mod solver_choice;
 mod pose_search;

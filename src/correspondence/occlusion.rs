@@ -8,8 +8,8 @@
 
 use rayon::prelude::*;
 
+use super::mover::Mover;
 use super::scene::Scene;
-use super::scoring::Mover;
 use crate::geometry::{Point3, Similarity, Vector3};
 
 /// Sample points per task.

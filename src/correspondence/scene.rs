@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::level_cloud::LevelCloud;
+use super::mover::Mover;
 use super::prior::{Prior, Reach};
-use super::scoring::Mover;
 use crate::geometry::{Point3, Similarity, Start, Vector3};
 use crate::limits::Limits;
 use crate::planes::{FacetGrid, Facing, Hit, Look, OrientedPoint, Patches, PreparedCity, Upright};

@@ -1,20 +1,17 @@
 //! How well a pose explains the cloud: the inlier share, of sample points that lie on facets of the right side and direction.
 //!
-//! A sample point counts for nothing from a distance on that shrinks and grows with the pose's scale, so that no shrinking of the cloud can gain
-//! level cloud.
-
-use nalgebra::Matrix3;
+//! A sample point counts for nothing from a distance on that shrinks and grows with the pose's scale, so that shrinking the cloud gains
+//! nothing.
 
 use super::scene::Scene;
-use crate::geometry::{Point3, Similarity, Vector3};
-use crate::planes::OrientedPoint;
+use crate::geometry::Similarity;
 use crate::robust::truncated_quadratic;
 
 impl Scene<'_> {
     /// Inlier share within `gate_m` (metres of the start), by the sample points of `point_subset` alike.
     pub fn inlier_share(&self, point_subset: &[u32], city_from_level: &Similarity, gate_m: f64) -> f64 {
         let mut sum = 0.0;
-        self.each_inlier(point_subset, city_from_level, gate_m, |_, truncated_quadratic| sum += truncated_quadratic);
+        self.each_inlier(point_subset, city_from_level, gate_m, |_, inlier| sum += inlier);
         sum / point_subset.len().max(1) as f64
     }
 
@@ -37,7 +34,7 @@ impl Scene<'_> {
             if (sum + left as f64) / count - cost < least {
                 return None;
             }
-            self.each_inlier(part, city_from_level, gate_m, |_, truncated_quadratic| sum += truncated_quadratic);
+            self.each_inlier(part, city_from_level, gate_m, |_, inlier| sum += inlier);
             left -= part.len();
         }
         Some(sum / count - cost).filter(|score| *score >= least)
@@ -64,34 +61,6 @@ impl Scene<'_> {
 
 /// Sample points between two looks at whether a score can still be reached.
 const BETWEEN_LOOKS: usize = 32;
-
-/// A similarity multiplied out for many points.
-pub struct Mover {
-    scaled: Matrix3<f64>,
-    rotation: Matrix3<f64>,
-    translation: Vector3<f64>,
-}
-
-impl Mover {
-    pub fn new(pose: &Similarity) -> Mover {
-        let rotation = *pose.rotation.matrix();
-        Mover { scaled: rotation * pose.scale, rotation, translation: pose.translation }
-    }
-
-    pub fn sample_point(&self, p: &OrientedPoint) -> OrientedPoint {
-        OrientedPoint { position: self.place(p), normal: self.direction(p), ..*p }
-    }
-
-    #[inline]
-    pub fn place(&self, p: &OrientedPoint) -> Point3<f64> {
-        Point3::from(self.scaled * p.position.coords + self.translation)
-    }
-
-    #[inline]
-    pub fn direction(&self, p: &OrientedPoint) -> Vector3<f64> {
-        self.rotation * p.normal
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -172,10 +141,8 @@ mod tests {
         assert!(cost > 0.001, "{cost}");
         let share = scene.inlier_share(&point_subset, &truth, scene.gate_unit_m);
         assert_eq!(scene.score(&point_subset, &truth, scene.gate_unit_m), share - cost);
-        let mut level_cloud = vec![0.0; point_subset.len()];
-        scene.each_inlier(&point_subset, &truth, scene.gate_unit_m, |k, truncated_quadratic| {
-            level_cloud[k] = truncated_quadratic
-        });
-        assert_eq!(share, level_cloud.iter().sum::<f64>() / level_cloud.len() as f64);
+        let mut inliers = vec![0.0; point_subset.len()];
+        scene.each_inlier(&point_subset, &truth, scene.gate_unit_m, |k, inlier| inliers[k] = inlier);
+        assert_eq!(share, inliers.iter().sum::<f64>() / inliers.len() as f64);
     }
 }

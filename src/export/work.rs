@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::output::OutputError;
+use super::output_error::OutputError;
 
 /// What may stand in the folder; anything else there was put by somebody else.
 const LOCK: &str = "lock";

@@ -8,8 +8,8 @@
 
 use super::city_planes::PlaneId;
 use super::directions::{Directions, Facing};
-use super::facet_grid::{Hit, OrientedPoint};
 use super::facet_visibility::FacetVisibility;
+use super::hit::{Hit, OrientedPoint};
 use super::surface::CitySurface;
 use crate::city::FacetId;
 use crate::geometry::{Point3, Vector3};

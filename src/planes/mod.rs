@@ -7,6 +7,7 @@ mod facet_visibility;
 mod facet_grid;
 mod facet_tile;
 mod fit;
+mod hit;
 mod patches;
 mod prepared_city;
 mod surface;
@@ -15,8 +16,9 @@ mod upright;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
 pub use directions::Facing;
-pub use facet_grid::{FacetGrid, Hit, Look, OrientedPoint};
+pub use facet_grid::{FacetGrid, Look};
 pub use fit::{FittedPlane, fit_plane_robustly};
+pub use hit::{Hit, OrientedPoint};
 pub use patches::{Patches, patches};
 pub use prepared_city::PreparedCity;
 pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start};

@@ -9,8 +9,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rayon::prelude::*;
 
 use super::city_planes::PlaneId;
-use super::facet_grid::{FacetGrid, Hit, Look, OrientedPoint};
+use super::facet_grid::{FacetGrid, Look};
 use super::facet_visibility::FacetVisibility;
+use super::hit::{Hit, OrientedPoint};
 use super::surface::CitySurface;
 use crate::city::{CityModel, FacetId};
 use crate::geometry::Point3;

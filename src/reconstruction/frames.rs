@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Translation3};
 
 use super::ReconstructionError;
-use super::colmap::Checker;
+use super::checker::Checker;
 use super::ids::IdIndex;
 use super::transform::unit_quaternion;
 use crate::format::colmap::{FrameRecord, PoseRecord, RigRecord, SENSOR_CAMERA, SensorRecord};

@@ -1,5 +1,6 @@
 //! A reconstruction as a structure-from-motion tool left it: cameras, images, points, tracks, in its own frame.
 
+mod checker;
 mod colmap;
 mod frames;
 mod ids;

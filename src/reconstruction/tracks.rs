@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::colmap::Checker;
+use super::checker::Checker;
 use super::ids::IdIndex;
 use super::{Image, ImageIndex, PointIndex, ReconstructionError, WarningKind};
 use crate::format::colmap::PointRecords;

@@ -1,7 +1,7 @@
 //! What the unknowns beside the pose turned out to be, and what of it is worth telling.
 
-use super::estimate::{COMMON, LIDS, System, WALLS};
 use super::observations::Kind;
+use super::system::{COMMON, LIDS, System, WALLS};
 use crate::limits::UncertaintyLimits;
 
 /// Errors of the model and of the reconstruction, metres.

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::elimination::{eliminate, inverse};
-use super::estimate::{POSE, System};
+use super::system::{POSE, System};
 use crate::robust::{Matrix7, Vector7};
 
 /// By how much directions of the pose scatter more than stated.

@@ -15,6 +15,7 @@ mod estimate;
 mod findings;
 mod leave_out;
 mod observations;
+mod system;
 
 pub use estimate::{Estimate, estimate};
 pub use findings::SystematicErrors;

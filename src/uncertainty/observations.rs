@@ -92,7 +92,7 @@ struct Body {
 }
 
 /// What lies on the city within `gate_m` (metres of the start) at `pose`.
-pub(super) fn sample(refiner: &PoseRefiner, pose: &Similarity, gate_m: f64) -> Observations {
+pub(super) fn observations(refiner: &PoseRefiner, pose: &Similarity, gate_m: f64) -> Observations {
     let scene = refiner.scene;
     let limits = &scene.limits.uncertainty;
     let all: Vec<u32> = (0..scene.level_cloud.sample_points.len() as u32).collect();

@@ -1,8 +1,9 @@
 //! What the stages found, put together as an [`Alignment`].
 
+use super::AlignOptions;
 use super::evidence::Gathered;
 use super::obstacle::Obstacle;
-use super::{AlignOptions, Outcome};
+use super::task::Outcome;
 use crate::correspondence::{NO_SOLVER, PointPlaneMatch};
 use crate::geometry::Point3;
 use crate::planes::{Patches, PreparedCity, UpCandidate};

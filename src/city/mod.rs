@@ -6,6 +6,7 @@
 mod build;
 mod facet;
 mod join;
+mod model;
 mod orientation;
 mod origin;
 mod polygons;
@@ -19,95 +20,6 @@ mod triangulate;
 mod validate;
 mod warning;
 
-use std::ops::Range;
-use std::path::PathBuf;
-
-use crate::geometry::{Plane, Point3, Vector3};
-
+pub use model::{CityModel, CityRole, CitySource, Facet, FacetId, ObjectId};
 pub use read::{CityError, CityOptions, CityUp, read_city};
 pub use warning::{CityDefect, CityPlace, CityWarning};
-
-/// Index into [`CityModel::facets`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct FacetId(pub u32);
-
-/// Index into [`CityModel::objects`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ObjectId(pub u32);
-
-/// A polyhedral city model. File coordinates are `local + origin`.
-#[derive(Clone, Debug, Default)]
-pub struct CityModel {
-    /// Shift that was taken off every vertex, city frame, metres.
-    pub origin: Vector3<f64>,
-    /// Local coordinates, metres, z up.
-    pub vertices: Vec<Point3<f64>>,
-    pub facets: Vec<Facet>,
-    /// Vertex indices of all triangles; a facet's own are `Facet::triangles`.
-    pub triangles: Vec<[u32; 3]>,
-    /// Names of buildings (groups, objects, nodes).
-    pub objects: Vec<String>,
-    /// One per file, in the order in which they were given: the city, then terrain.
-    pub sources: Vec<CitySource>,
-    /// What the files had wrong and was tolerated, one entry a kind.
-    pub warnings: Vec<CityWarning>,
-}
-
-/// One polygon of the model, or one triangle where the file has only triangles.
-#[derive(Clone, Debug)]
-pub struct Facet {
-    /// Outline as vertex indices, counter-clockwise seen from outside; holes are bridged or triangulated away.
-    pub outline: Vec<u32>,
-    /// Newell plane through the outline's centroid; the normal is the outward side by winding.
-    pub plane: Plane,
-    /// Square metres, of the triangulation.
-    pub area: f64,
-    pub object: ObjectId,
-    /// Range in [`CityModel::triangles`].
-    pub triangles: Range<u32>,
-}
-
-/// What one file gave to the model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CitySource {
-    pub path: PathBuf,
-    pub role: CityRole,
-    /// Indices into [`CityModel::facets`].
-    pub facets: Range<u32>,
-    /// Indices into [`CityModel::objects`].
-    pub objects: Range<u32>,
-    /// How finely the file's coordinates are written, metres.
-    pub precision_m: f64,
-}
-
-/// What a file is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CityRole {
-    City,
-    /// A surface that is open by its nature.
-    Terrain,
-}
-
-impl CityModel {
-    /// The smallest box around all vertices, local coordinates; `None` without any.
-    pub fn bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
-        let first = *self.vertices.first()?;
-        Some(self.vertices.iter().fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex))))
-    }
-
-    /// The name of an object, or an empty text for an id of another model.
-    pub fn object_name(&self, object: ObjectId) -> &str {
-        self.objects.get(object.0 as usize).map_or("", String::as_str)
-    }
-
-    /// All facets with their ids, in order.
-    pub fn facets_with_ids(&self) -> impl Iterator<Item = (FacetId, &Facet)> {
-        (0..).map(FacetId).zip(&self.facets)
-    }
-
-    /// The corners of a facet's triangles.
-    pub fn triangles_of<'a>(&'a self, facet: &Facet) -> impl Iterator<Item = [Point3<f64>; 3]> + 'a {
-        let range = facet.triangles.start as usize..facet.triangles.end as usize;
-        self.triangles[range].iter().map(|corners| corners.map(|corner| self.vertices[corner as usize]))
-    }
-}

@@ -4,6 +4,7 @@ use super::build::build;
 use super::source::Source;
 use super::*;
 use crate::format::obj::read_obj;
+use crate::geometry::{Point3, Vector3};
 
 fn source(role: CityRole, text: &str) -> Source {
     Source::from_obj(Path::new("folder/block.obj"), role, CityUp::Z, read_obj(text.as_bytes()).unwrap())

@@ -10,7 +10,7 @@ use super::ids::IdIndex;
 use super::tracks::{Links, tracks};
 use super::*;
 use crate::format::colmap::{CameraRecord, ImageRecord, Model, NO_POINT, ObservationRecord, PointRecords};
-use crate::geometry::CameraModel;
+use crate::geometry::{Camera, CameraModel, Point3};
 
 /// How far a quaternion's length may be from one without a word: text of few digits.
 const QUATERNION_TOLERANCE: f64 = 1e-3;

@@ -6,111 +6,11 @@
 mod buffers;
 mod check;
 mod container;
+mod file;
 mod mesh;
 mod nodes;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
-
-use super::escaped;
-use buffers::Buffers;
 pub use container::is_glb;
-use mesh::MeshReader;
-
-/// Triangles of the scene in its own frame: metres, y up.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct GltfFile {
-    /// In the order in which the scene's nodes are walked, children after their parents.
-    pub parts: Vec<GltfPart>,
-    /// Primitives of points or lines, which have no surface.
-    pub without_surface: u64,
-    /// Node that holds the first of them.
-    pub first_without_surface: Option<String>,
-}
-
-/// A mesh where one node puts it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GltfPart {
-    /// The node's name, else the mesh's, else the node's number.
-    pub name: String,
-    pub positions: Vec<[f64; 3]>,
-    /// Counter-clockwise seen from outside, also where the node mirrors the mesh.
-    pub triangles: Vec<[u32; 3]>,
-    /// Distance of neighbouring f32 numbers at the largest coordinate: no finer than this can the part be known, metres.
-    pub spacing_m: f64,
-}
-
-/// Why bytes are no glTF scene, and where.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{problem}")]
-pub struct GltfError {
-    /// Byte of the file, place in its JSON, or nothing where the whole is meant.
-    pub place: String,
-    /// Name of the node or mesh it concerns.
-    pub object: Option<String>,
-    pub problem: GltfProblem,
-}
-
-/// What is wrong.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum GltfProblem {
-    #[error("the file is cut off: {what} says {claimed} bytes, {found} are there")]
-    Truncated { what: &'static str, claimed: u64, found: u64 },
-    #[error("glTF version {}, expected 2; convert the file", escaped(found))]
-    Version { found: String },
-    #[error("expected a chunk of type {expected}, found {found}")]
-    Chunk { expected: &'static str, found: String },
-    #[error("the JSON is broken: {}", escaped(message))]
-    Json { message: String },
-    #[error("the file needs the extension {}, which is not read; {remedy}", escaped(name))]
-    Extension { name: String, remedy: &'static str },
-    #[error("{what} {index} does not exist, there are {count}")]
-    Missing { what: &'static str, index: u64, count: usize },
-    #[error("{what}")]
-    Invalid { what: String },
-    #[error("accessor is {found}, expected {expected}")]
-    AccessorType { found: String, expected: &'static str },
-    #[error("{what} reaches to byte {end}, but there are {available}")]
-    BeyondEnd { what: &'static str, end: u128, available: u64 },
-    #[error("index {index} points outside the primitive's {vertices} vertices")]
-    IndexOutOfRange { index: u32, vertices: usize },
-    #[error("vertex {vertex} is not finite or farther than {limit:e} m from zero")]
-    OutOfReach { vertex: usize, limit: f64 },
-    #[error(
-        "more than {limit} vertices and indices when every node has its mesh, too many for {bytes} bytes; split the file, \
-         or write every mesh where it stands"
-    )]
-    TooLarge { limit: usize, bytes: usize },
-    #[error("buffer `{}` cannot be read: {reason}", escaped(uri))]
-    Buffer { uri: String, reason: String },
-}
-
-impl GltfError {
-    fn at(place: impl Into<String>, problem: GltfProblem) -> GltfError {
-        GltfError { place: place.into(), object: None, problem }
-    }
-
-    /// Names the object where none is named yet.
-    fn of(self, object: &str) -> GltfError {
-        GltfError { object: self.object.or_else(|| Some(object.to_owned())), ..self }
-    }
-}
-
-/// Reads glTF JSON or GLB. Further buffers are looked for in `folder`, and nowhere else.
-pub fn read_gltf(bytes: &[u8], folder: &Path) -> Result<GltfFile, GltfError> {
-    let (json, blob) = if is_glb(bytes) { container::split(bytes)? } else { (bytes, None) };
-    check::version(json)?;
-    let tree = nodes::read(json)?;
-    let document = check::document(json)?;
-    let placed = nodes::place(&tree, &document.as_json().meshes)?;
-    let mut reader = MeshReader::new(&document, Buffers::new(blob, folder), bytes.len());
-    for place in &placed {
-        reader.check(place).map_err(|error| error.of(&place.name()))?;
-    }
-    let mut file = GltfFile::default();
-    for place in &placed {
-        reader.read(place, &mut file).map_err(|error| error.of(&place.name()))?;
-    }
-    Ok(file)
-}
+pub use file::{GltfError, GltfFile, GltfPart, GltfProblem, read_gltf};

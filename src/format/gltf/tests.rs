@@ -1,6 +1,9 @@
 use base64::Engine;
 use serde_json::{Value, json};
 
+use std::path::Path;
+
+use super::buffers::Buffers;
 use super::*;
 
 /// A scene with one mesh of one primitive: the bytes of one buffer, and JSON that tests may change.

@@ -1,3 +1,6 @@
+use std::ops::Range;
+
+use super::file::LineTally;
 use super::*;
 
 fn read(text: &str) -> ObjFile {

@@ -1,0 +1,239 @@
+//! The main job on one page: patches, up, scene, search, refinement, evidence, verdict.
+
+use std::f64::consts::PI;
+
+use super::evidence::Gathered;
+use super::{evidence, obstacle, report};
+use crate::correspondence::{Candidate, Hypotheses, PoseRefiner, Scene, candidates, joined, search};
+use crate::evidence::CandidateEvaluation;
+use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
+use crate::imagery::LiftedSuperpixels;
+use crate::limits::Limits;
+use crate::observer::{Cancelled, Observer, Stage, go_on};
+use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
+use crate::reconstruction::Reconstruction;
+use crate::robust::Motion;
+use crate::verdict::{Alignment, Decision, Verdict, judge};
+
+/// Which way is up in the reconstruction.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Up {
+    /// Estimated from walls, floors and cameras.
+    #[default]
+    Auto,
+    /// Not used: the search turns freely, as far as three sigmas of the start's tilt.
+    None,
+    /// Given, in the sfm frame (any length but zero).
+    Given(Vector3<f64>),
+}
+
+/// What the user may set.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct AlignOptions {
+    /// To absolute city coordinates.
+    pub start: Start,
+    /// Metres per sfm unit, held fixed, in place of the start's; free where `None`.
+    pub fixed_scale: Option<f64>,
+    pub up: Up,
+    /// What a freedom must be held to, metres at the scene's radius; where `None`, as the limits say.
+    pub accuracy_m: Option<f64>,
+    /// Same seed, same answer, whatever the number of threads.
+    pub seed: u64,
+    pub(crate) limits: Limits,
+}
+
+impl AlignOptions {
+    /// Everything but the start as most users want it.
+    pub fn new(start: Start) -> AlignOptions {
+        AlignOptions { start, fixed_scale: None, up: Up::Auto, accuracy_m: None, seed: 0, limits: Limits::default() }
+    }
+
+    /// Holds the scale, metres per sfm unit; `None` leaves it free.
+    pub fn with_fixed_scale(self, metres_per_unit: impl Into<Option<f64>>) -> AlignOptions {
+        AlignOptions { fixed_scale: metres_per_unit.into(), ..self }
+    }
+
+    pub fn with_up(self, up: Up) -> AlignOptions {
+        AlignOptions { up, ..self }
+    }
+
+    /// What a freedom must be held to in order to be determined, metres at the scene's radius.
+    pub fn with_accuracy(self, accuracy_m: f64) -> AlignOptions {
+        AlignOptions { accuracy_m: Some(accuracy_m), ..self }
+    }
+
+    /// The chance of a wrong `aligned` that may be taken, between zero and one.
+    pub fn with_false_alarm(mut self, chance: f64) -> AlignOptions {
+        self.limits.verdict.false_alarm = chance;
+        self
+    }
+
+    #[doc(hidden)]
+    pub fn with_limits(self, limits: Limits) -> AlignOptions {
+        AlignOptions { limits, ..self }
+    }
+
+    pub fn with_seed(self, seed: u64) -> AlignOptions {
+        AlignOptions { seed, ..self }
+    }
+}
+
+/// Finds where the reconstruction stands in the city and judges it. `superpixels` are the evidence of labels or
+/// photographs; without them planar clusters are taken out of the cloud itself.
+pub fn align(
+    city: &PreparedCity,
+    reconstruction: &Reconstruction,
+    superpixels: Option<&LiftedSuperpixels>,
+    options: &AlignOptions,
+    observer: &dyn Observer,
+) -> Result<Alignment, Cancelled> {
+    observer.progress(Stage::Patches, 0, 1);
+    let patches = patches(reconstruction, superpixels, &options.limits.patches);
+    let start = local_start(options, &patches, city);
+    if let Some(obstacle) = obstacle::find(city, reconstruction, &patches, &start, &options.limits) {
+        return Ok(report::refused(&obstacle, city, &patches, options));
+    }
+    go_on(observer)?;
+    observer.progress(Stage::City, 0, 1);
+    let task = Task { city, patches: &patches, start: &start, options, observer };
+    let answer = task.answer()?;
+    let up_elsewhere = up_elsewhere(&answer.ruling, &patches, &start, options);
+    Ok(report::tell(answer, &patches, up_elsewhere, city, options))
+}
+
+/// The start in the city's local frame. A scale that is given takes the place of the start's, about the cloud's middle.
+fn local_start(options: &AlignOptions, patches: &Patches, city: &PreparedCity) -> Start {
+    let city_from_sfm = options.start.city_from_sfm().relative_to(&city.model.origin);
+    let middle = patches.middle();
+    options.start.about(match options.fixed_scale {
+        None => city_from_sfm,
+        Some(scale) => Similarity::about(&middle, &city_from_sfm.apply(&middle), scale, city_from_sfm.rotation),
+    })
+}
+
+/// What is to be aligned, and how.
+struct Task<'a> {
+    city: &'a PreparedCity,
+    patches: &'a Patches,
+    /// To the city's local frame; of the given scale where there is one.
+    start: &'a Start,
+    options: &'a AlignOptions,
+    observer: &'a dyn Observer,
+}
+
+/// One way of taking up, searched.
+struct View<'a> {
+    upright: Upright,
+    scene: Scene<'a>,
+    hypotheses: Hypotheses,
+    candidates: Vec<Candidate>,
+}
+
+/// What was found, and what is said of it.
+pub(super) struct Outcome {
+    pub ruling: Decision,
+    pub found: Gathered,
+    pub hypotheses: Hypotheses,
+}
+
+impl<'a> Task<'a> {
+    /// With the scale that was given, if one was. Where the data deny it, or cannot tell with it, what they say with the scale free is asked: a
+    /// pose of the wrong scale is wrong everywhere.
+    fn answer(&self) -> Result<Outcome, Cancelled> {
+        if self.options.fixed_scale.is_none() {
+            return self.outcome(Motion::Similarity);
+        }
+        let of_given = self.outcome(Motion::Rigid)?;
+        if of_given.found.evidence.hold.agrees_with_given_scale(&self.options.limits.verdict) {
+            return Ok(of_given);
+        }
+        let free = self.outcome(Motion::Similarity)?;
+        Ok(if free.ruling.scale_is_denied { free } else { of_given })
+    }
+
+    fn outcome(&self, motion: Motion) -> Result<Outcome, Cancelled> {
+        let view = self.best_view(motion)?;
+        self.observer.progress(Stage::Evidence, 0, 1);
+        let surroundings = self.surroundings(&view);
+        let contest = view
+            .candidates
+            .first()
+            .map(|best| CandidateEvaluation::new(&surroundings, self.patches, &best.refined, self.options.seed));
+        let contestants =
+            contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
+        go_on(self.observer)?;
+        let refiner = PoseRefiner::new(&view.scene);
+        let given_scale = self
+            .options
+            .fixed_scale
+            .and_then(|_| Some(evidence::scale_of_data(&refiner, contest.as_ref()?, contestants.first()?)));
+        let found = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale, self.options.accuracy_m);
+        let ruling = judge(&found.evidence, &self.options.limits.verdict);
+        Ok(Outcome { ruling, found, hypotheses: view.hypotheses })
+    }
+
+    /// Searches under every up that there may be; the view with the best candidate, joined by the candidates of the others.
+    fn best_view(&self, motion: Motion) -> Result<View<'a>, Cancelled> {
+        let uprights = uprights(self.patches, self.start, self.options.up, &self.options.limits);
+        let mut views = uprights.iter().map(|upright| self.view(upright, motion)).collect::<Result<Vec<View>, _>>()?;
+        let total_score = |view: &View| view.candidates.first().map_or(f64::NEG_INFINITY, Candidate::total_score);
+        let at =
+            (0..views.len()).max_by(|&a, &b| total_score(&views[a]).total_cmp(&total_score(&views[b])).then(b.cmp(&a)));
+        let mut best = views.swap_remove(at.unwrap_or(0));
+        let sfm_from_level = best.scene.level_cloud.level_from_sfm.inverse();
+        let seen_from_best = |view: View<'a>| {
+            let other_from_level = view.scene.level_cloud.level_from_sfm * sfm_from_level;
+            view.candidates.into_iter().map(move |candidate| (other_from_level, candidate))
+        };
+        let others: Vec<(Similarity, Candidate)> = views.into_iter().flat_map(seen_from_best).collect();
+        if !others.is_empty() {
+            best.candidates = joined(&PoseRefiner::new(&best.scene), best.candidates, &others);
+        }
+        Ok(best)
+    }
+
+    fn view(&self, upright: &Upright, motion: Motion) -> Result<View<'a>, Cancelled> {
+        let scene = Scene::new(self.city, self.patches, self.start, motion, upright, &self.options.limits);
+        let hypotheses = search(&scene, self.options.seed, self.observer)?;
+        let candidates = candidates(&PoseRefiner::new(&scene), &hypotheses);
+        go_on(self.observer)?;
+        Ok(View { upright: *upright, scene, hypotheses, candidates })
+    }
+
+    /// The scene of a view with a prior that reaches over its neighbourhood, whatever the heading.
+    fn surroundings(&self, view: &View) -> Scene<'a> {
+        let limits = &self.options.limits;
+        let StartSigmas { position_m, .. } = *self.start.sigmas();
+        let least_m = limits.null_poses.least_reach_m / limits.reach_sigmas;
+        let sigmas = StartSigmas { position_m: position_m.max(least_m), heading_rad: PI, ..*self.start.sigmas() };
+        let start = self.start.with_sigmas(sigmas);
+        Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits)
+    }
+}
+
+/// The ways of taking up that are searched.
+fn uprights(patches: &Patches, start: &Start, up: Up, limits: &Limits) -> Vec<Upright> {
+    let guess = up_of(start);
+    match up {
+        Up::Auto => match choose_up(patches, &guess, limits) {
+            UpChoice::Known(all) => all,
+            UpChoice::Free(up) => vec![up],
+        },
+        Up::None => vec![guess],
+        Up::Given(up) => {
+            vec![Upright { up: up.try_normalize(0.0).unwrap_or(guess.up), sigma_rad: 0.0, known: true }]
+        }
+    }
+}
+
+/// The up that walls and cameras see, where nothing was found and it lies beyond the start's reach.
+fn up_elsewhere(ruling: &Decision, patches: &Patches, start: &Start, options: &AlignOptions) -> Option<UpCandidate> {
+    let failed = ruling.verdict == Verdict::Failed && options.up == Up::Auto;
+    failed.then(|| up_beyond_start(patches, &up_of(start), &options.limits)).flatten()
+}
+
+fn up_of(start: &Start) -> Upright {
+    let up = start.city_from_sfm().rotation.inverse() * Vector3::z();
+    Upright { up, sigma_rad: start.sigmas().tilt_rad, known: false }
+}

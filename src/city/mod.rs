@@ -12,6 +12,7 @@ mod origin;
 mod polygons;
 mod read;
 mod recognise;
+mod signed_links;
 mod source;
 mod subset;
 #[cfg(test)]

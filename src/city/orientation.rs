@@ -22,6 +22,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
+use super::signed_links::Links;
 use super::validate::{OBJECTS_PER_CHUNK, facets_by_object, sorted_edges};
 use super::warning::{CityDefect, CityPlace, Warnings};
 use super::{CityModel, CityRole, CitySource, Facet};
@@ -301,48 +302,6 @@ impl<'a> Object<'a> {
         };
         let is_outer_turned = mostly_agrees(&self.shells[outer]) == (sides[outer] == Side::Inward);
         if mostly_agrees(shell) == is_outer_turned { Side::Inward } else { Side::Outward }
-    }
-}
-
-/// Facets tied to each other with one sense or the opposite (a union-find with signs).
-struct Links {
-    /// The facet that each hangs on, and whether it runs as that one does.
-    on: Vec<(usize, bool)>,
-    is_twisted: Vec<bool>,
-}
-
-impl Links {
-    fn new(count: usize) -> Links {
-        Links { on: (0..count).map(|at| (at, true)).collect(), is_twisted: vec![false; count] }
-    }
-
-    /// The first facet of all that hang together, and whether this one runs as that does.
-    fn root(&mut self, facet: usize) -> (usize, bool) {
-        let (mut root, mut agrees) = (facet, true);
-        while self.on[root].0 != root {
-            let (next, same) = self.on[root];
-            (root, agrees) = (next, agrees == same);
-        }
-        // Hang all that were passed directly on the root.
-        let (mut at, mut rest) = (facet, agrees);
-        while at != root {
-            let (next, same) = std::mem::replace(&mut self.on[at], (root, rest));
-            (at, rest) = (next, rest == same);
-        }
-        (root, agrees)
-    }
-
-    /// Two facets at one edge: they have one sense unless both walk it in the same direction.
-    fn tie(&mut self, one: usize, other: usize, is_same_direction: bool) {
-        let ((a, a_agrees), (b, b_agrees)) = (self.root(one), self.root(other));
-        let same = (a_agrees == b_agrees) != is_same_direction;
-        if a == b {
-            self.is_twisted[a] |= !same;
-            return;
-        }
-        let (low, high) = (a.min(b), a.max(b));
-        self.on[high] = (low, same);
-        self.is_twisted[low] |= self.is_twisted[high];
     }
 }
 

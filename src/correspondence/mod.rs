@@ -10,10 +10,12 @@ mod solver_choice;
 mod pose_search;
 mod prior;
 mod refine;
+mod rotations;
 mod sampler;
 mod scene;
 mod scoring;
 mod search;
+mod weighted_choice;
 mod occlusion;
 mod targets;
 #[cfg(test)]

@@ -21,8 +21,10 @@ use nalgebra::Matrix3;
 use super::belief::{RowErrors, ScaleTranslationEstimate};
 use super::level_cloud::{LevelCloud, LevelPatch};
 use super::prior::{Prior, heading_of};
+use super::rotations::{about_up, about_up_from, bisectors};
 use super::scene::Scene;
 use super::targets::{LEAST_SIN_FOR_AZIMUTH, Target, Targets, azimuth, elevation, has_azimuth, wrapped};
+use super::weighted_choice::{Choice, Drawn};
 use crate::geometry::{Plane, Rotation3, Vector3};
 use crate::limits::SearchLimits;
 use crate::planes::{CityPlanes, PlaneId};
@@ -98,8 +100,6 @@ const PILOT_DRAWS: u64 = 256;
 const PILOT_SEED: u64 = 0;
 /// Two normals nearer to parallel than this do not fix a rotation.
 const LEAST_SIN_BETWEEN: f64 = 0.3;
-/// Sum and difference of normals shorter than this have no direction.
-const SMALLEST_BISECTOR: f64 = 1e-3;
 /// Patches compared when the next one is chosen.
 const TENDER: usize = 6;
 
@@ -427,182 +427,11 @@ impl Draft {
     }
 }
 
-/// One of a stream of offers, drawn with probability proportional to their weights.
-///
-/// An offer takes the place of those before it with the share that it has of the total so far. So the one that is taken stays until
-/// the total exceeds its own, divided by an even draw: one random number for each change and not for each offer (Efraimidis and
-/// Spirakis 2006, with jumps).
-struct Choice<T> {
-    total: f64,
-    total_of_squares: f64,
-    /// The total at which the next offer is taken.
-    next: f64,
-    taken: Option<T>,
-}
-
-/// What was drawn, and the chance that it is the right offer.
-struct Drawn<T> {
-    what: T,
-    chance: f64,
-}
-
-impl<T> Default for Choice<T> {
-    fn default() -> Self {
-        Choice { total: 0.0, total_of_squares: 0.0, next: 0.0, taken: None }
-    }
-}
-
-impl<T> Choice<T> {
-    fn offer(&mut self, weight: f64, what: T, random: &mut Random) {
-        self.total += weight;
-        self.total_of_squares += weight * weight;
-        if self.total > self.next {
-            self.taken = Some(what);
-            self.next = self.total / (1.0 - random.unit());
-        }
-    }
-
-    fn drawn(self) -> Option<Drawn<T>> {
-        let chance = self.total_of_squares / (self.total * self.total);
-        self.taken.map(|what| Drawn { what, chance })
-    }
-}
-
 /// A patch's normal, and its opposite where no camera tells the side.
 fn sides(patch: &LevelPatch) -> impl Iterator<Item = Vector3<f64>> + use<> {
     let normal = patch.normal;
     [1.0, -1.0].into_iter().take(if patch.sided { 1 } else { 2 }).map(move |side| normal * side)
 }
 
-/// The turn about up that leads one normal to the azimuth of another.
-fn about_up_from(from: &Vector3<f64>, to: &Vector3<f64>) -> Matrix3<f64> {
-    let lengths = from.xy().norm() * to.xy().norm();
-    let (cos, sin) = (from.xy().dot(&to.xy()) / lengths, from.xy().perp(&to.xy()) / lengths);
-    Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
-}
-
-/// The turn by a heading.
-fn about_up(heading_rad: f64) -> Matrix3<f64> {
-    let (sin, cos) = heading_rad.sin_cos();
-    Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
-}
-
-/// Sum and difference of two unit vectors, and what stands across both: axes at right angles. Laying such axes onto each other
-/// lays one pair of vectors onto another and divides evenly what their angles differ.
-fn bisectors(a: &Vector3<f64>, b: &Vector3<f64>) -> Option<Matrix3<f64>> {
-    let (sum, difference) = ((a + b).try_normalize(SMALLEST_BISECTOR)?, (a - b).try_normalize(SMALLEST_BISECTOR)?);
-    Some(Matrix3::from_columns(&[sum, difference, sum.cross(&difference)]))
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::correspondence::test_scene::Made;
-    use crate::synthetic::Offset;
-
-    /// Samples on four planes of four houses, from a start that is off by a sigma or so.
-    fn samples(scene: &Scene) -> Vec<MinimalSample> {
-        let sampler = Sampler::new(scene);
-        (0..2000).filter_map(|stream| sampler.draw(4, &mut Random::stream(7, stream))).collect()
-    }
-
-    const OFF: Offset = Offset { shift_m: [6.0, -5.0, 1.5], heading_rad: 0.15, tilt_rad: [0.0; 2], scale: 1.1 };
-
-    #[test]
-    fn a_sample_pairs_patches_with_planes_in_sight_that_face_their_way() {
-        let made = Made::four_houses();
-        for scene in [made.scene(&OFF, Motion::Similarity), made.leaning_scene(&OFF, Motion::Similarity)] {
-            let in_sight = scene.city.planes_in_sight(&scene.reach.low, &scene.reach.high);
-            // The turn of the start, a tilt where it may lean, and what patch normals are off.
-            let most_rad = scene.prior.most_heading_rad() + scene.prior.most_tilt_rad() + 2.0 * 0.12;
-            let drawn = samples(&scene);
-            assert!(drawn.len() > 100, "{}", drawn.len());
-            for sample in &drawn {
-                assert_eq!(sample.pairs.len() + sample.completion.len(), 4);
-                assert!(sample.chance > 0.0 && sample.chance <= 1.0, "{}", sample.chance);
-                for pair in &sample.pairs {
-                    assert!(in_sight.contains(&pair.plane));
-                    let plane = &made.city.planes().planes[pair.plane.0 as usize].plane;
-                    assert_eq!(pair.target, *plane);
-                    assert!(pair.normal.angle(&plane.normal) < most_rad, "{pair:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn the_right_planes_are_drawn_about_as_often_as_the_samples_say() {
-        let made = Made::four_houses();
-        let scene = made.scene(&OFF, Motion::Similarity);
-        let truth = made.truth(&scene);
-        // A pair is right where the truth puts the patch into its plane.
-        let is_right = |pair: &PatchPlanePair| {
-            let center = truth.apply(&scene.level_cloud.patches[pair.patch as usize].center);
-            pair.target.signed_distance(&center).abs() < 0.3
-                && (truth.rotation * pair.normal).dot(&pair.target.normal) > 0.95
-        };
-        let drawn = samples(&scene);
-        let right = drawn.iter().filter(|sample| sample.pairs.iter().all(is_right)).count();
-        let said: f64 = drawn.iter().map(|sample| sample.chance).sum();
-        // The likelihoods are those of a Gaussian that knows nothing of the block: right to a factor of five.
-        let ratio = right as f64 / said;
-        assert!(right > 5 && ratio > 0.2 && ratio < 5.0, "{right} right, {said} said, {}", drawn.len());
-    }
-
-    #[test]
-    fn bisectors_lay_one_pair_of_normals_onto_another() {
-        let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.0).into_inner();
-        let (a, b) = (Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.0, 1.0, 0.0));
-        let found = bisectors(&(turn * a), &(turn * b)).unwrap() * bisectors(&a, &b).unwrap().transpose();
-        assert!((found - turn).norm() < 1e-12 && (found.determinant() - 1.0).abs() < 1e-12);
-        assert!(bisectors(&a, &a).is_none() && bisectors(&a, &-a).is_none());
-    }
-
-    #[test]
-    fn the_chance_of_a_draw_is_that_of_taking_the_right_offer() {
-        let drawn = |weights: &[f64]| {
-            let mut choice = Choice::default();
-            let mut random = Random::stream(1, 0);
-            weights.iter().for_each(|w| choice.offer(*w, *w, &mut random));
-            choice.drawn().map(|drawn| drawn.chance)
-        };
-        assert_eq!(drawn(&[]), None);
-        assert_eq!(drawn(&[0.3]), Some(1.0));
-        // Two offers alike: right every other time. Three quarters and a quarter: 9/16 + 1/16.
-        assert_eq!(drawn(&[2.0, 2.0]), Some(0.5));
-        assert_eq!(drawn(&[3.0, 1.0]), Some(0.625));
-    }
-
-    #[test]
-    fn offers_are_drawn_as_often_as_they_weigh() {
-        let weights = [1.0, 0.0, 5.0, 0.5, 2.5, 1.0];
-        let mut counts = [0; 6];
-        for stream in 0..20_000 {
-            let mut random = Random::stream(3, stream);
-            let mut choice = Choice::default();
-            (0..).zip(weights).for_each(|(i, w)| choice.offer(w, i, &mut random));
-            let taken: usize = choice.drawn().map(|drawn| drawn.what).unwrap();
-            counts[taken] += 1;
-        }
-        for (count, weight) in counts.into_iter().zip(weights) {
-            let expected = 2000.0 * weight;
-            // Five standard deviations.
-            assert!((f64::from(count) - expected).abs() <= 5.0 * expected.sqrt(), "{counts:?}");
-        }
-    }
-
-    #[test]
-    fn offers_that_are_not_kept_are_the_same() {
-        let made = Made::four_houses();
-        for scene in [made.scene(&OFF, Motion::Similarity), made.leaning_scene(&OFF, Motion::Similarity)] {
-            let kept = samples(&scene);
-            let forgetful = Sampler::new(&scene);
-            forgetful.kept.store(MOST_OFFERS_KEPT, Ordering::Relaxed);
-            let draw = |stream| forgetful.draw(4, &mut Random::stream(7, stream));
-            let found: Vec<MinimalSample> = (0..2000).filter_map(draw).collect();
-            assert_eq!(found.len(), kept.len());
-            let told = |sample: &MinimalSample| sample.pairs.iter().map(|p| (p.patch, p.plane)).collect::<Vec<_>>();
-            assert!(found.iter().zip(&kept).all(|(a, b)| told(a) == told(b) && a.chance == b.chance));
-        }
-    }
-}
+mod tests;

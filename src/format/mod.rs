@@ -10,6 +10,7 @@ pub mod obj;
 mod placement;
 mod problem;
 pub mod ply;
+mod ply_row;
 mod start;
 mod text;
 

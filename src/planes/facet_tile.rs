@@ -6,12 +6,11 @@
 //!              that the answer is that of double precision throughout.
 //!              Neighbouring cells mostly have the same triangles, and share their list.
 
-use super::city_planes::PlaneId;
 use super::directions::{Directions, Facing};
 use super::facet_visibility::FacetVisibility;
 use super::hit::{Hit, OrientedPoint};
 use super::surface::CitySurface;
-use crate::city::FacetId;
+use super::tile_triangle::{Outline, TileTriangle};
 use crate::geometry::{Point3, Vector3};
 
 /// Cells along an edge of a tile.
@@ -66,29 +65,6 @@ impl Cell {
 /// Triangles that are fetched before they are looked at.
 const FETCHED: usize = 4;
 
-/// A triangle prepared for distance queries.
-#[derive(Clone, Copy, Debug)]
-struct TileTriangle {
-    /// Of the facet's plane, outward.
-    normal: Vector3<f64>,
-    offset: f64,
-    /// For each edge the in-plane unit normal that points out of the triangle, and its offset.
-    edges: [(Vector3<f64>, f64); 3],
-    plane: PlaneId,
-    /// In the model.
-    triangle: u32,
-}
-
-/// The same in single precision about the middle of the tile, as a cache line: its plane, then its edges.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct Outline {
-    x: [f32; 4],
-    y: [f32; 4],
-    z: [f32; 4],
-    offset: [f32; 4],
-}
-
 /// Head of a run of triangles in a list: their class, and how many they are.
 struct Run;
 
@@ -105,8 +81,6 @@ impl Run {
     }
 }
 
-/// Triangles smaller than this have no direction to speak of.
-const SMALLEST_TRIANGLE_M2: f64 = 1e-6;
 /// What single precision may be off, as a share of a tile's width: places and offsets of up to two widths, rounded (6e-8) some times.
 const MARGIN_OF_TILE: f64 = 4e-6;
 /// Rounding of a place in cells, and of a reach as a share of it.
@@ -379,141 +353,5 @@ impl Bound {
     }
 }
 
-impl TileTriangle {
-    fn new(triangle: u32, corners: &[Point3<f64>; 3], surface: &CitySurface, facet: FacetId) -> Option<TileTriangle> {
-        let [a, b, c] = corners;
-        let across = (b - a).cross(&(c - a));
-        if across.norm() < 2.0 * SMALLEST_TRIANGLE_M2 {
-            return None;
-        }
-        let plane = &surface.model.facets[facet.0 as usize].plane;
-        // The triangulation may wind against the facet; edges point out of the triangle all the same.
-        let winding = if across.dot(&plane.normal) < 0.0 { -1.0 } else { 1.0 };
-        let edge = |from: &Point3<f64>, to: &Point3<f64>| {
-            let out = (to - from).cross(&plane.normal).normalize() * winding;
-            (out, -out.dot(&from.coords))
-        };
-        Some(TileTriangle {
-            normal: plane.normal,
-            offset: plane.offset,
-            edges: [edge(a, b), edge(b, c), edge(c, a)],
-            plane: surface.planes().of_facet(facet),
-            triangle,
-        })
-    }
-
-    /// Where a sample point meets the triangle; `None` where it faces another way.
-    #[inline]
-    fn hit(&self, sample_point: &OrientedPoint) -> Option<Hit> {
-        let cos = self.normal.dot(&sample_point.normal);
-        if (if sample_point.sided { cos } else { cos.abs() }) < sample_point.min_cos {
-            return None;
-        }
-        let across_m = self.normal.dot(&sample_point.position.coords) + self.offset;
-        Some(Hit { plane: self.plane, normal: self.normal, across_m, outside_m: self.outside(&sample_point.position) })
-    }
-
-    /// How far a point's foot lies outside: exact beside an edge, a little too small beyond a sharp corner.
-    #[inline]
-    fn outside(&self, p: &Point3<f64>) -> f64 {
-        let [a, b, c] = &self.edges;
-        let (a, b, c) = (a.0.dot(&p.coords) + a.1, b.0.dot(&p.coords) + b.1, c.0.dot(&p.coords) + c.1);
-        a.max(b).max(c).max(0.0)
-    }
-}
-
-impl Outline {
-    fn new(t: &TileTriangle, middle: &Point3<f64>, width_m: f64) -> Outline {
-        let [a, b, c] = t.edges;
-        let rows = [(t.normal, t.offset), a, b, c];
-        let offset = |k: usize| {
-            let offset = rows[k].0.dot(&middle.coords) + rows[k].1;
-            // An edge beyond the tile bounds nothing in it, wherever it is.
-            (if k > 0 { offset.max(-2.0 * width_m) } else { offset }) as f32
-        };
-        Outline {
-            x: rows.map(|(out, _)| out.x as f32),
-            y: rows.map(|(out, _)| out.y as f32),
-            z: rows.map(|(out, _)| out.z as f32),
-            offset: std::array::from_fn(offset),
-        }
-    }
-
-    /// Squared distance of a place, metres.
-    #[inline]
-    fn distance_sq(&self, p: &Vector3<f32>) -> f32 {
-        let off = |k: usize| self.x[k] * p.x + self.y[k] * p.y + self.z[k] * p.z + self.offset[k];
-        // `f32::max` takes care of NaN, which there is none of here.
-        let larger = |a: f32, b: f32| if a > b { a } else { b };
-        let (across, outside) = (off(0), larger(larger(off(1), off(2)), larger(off(3), 0.0)));
-        across * across + outside * outside
-    }
-
-    #[inline]
-    fn cos(&self, normal: &Vector3<f32>) -> f32 {
-        self.x[0] * normal.x + self.y[0] * normal.y + self.z[0] * normal.z
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::planes::PreparedCity;
-    use crate::robust::Random;
-    use crate::synthetic::Block;
-
-    /// The same by looking at every triangle of the city whose box comes as near as the gate or, where `is_beyond`, does not.
-    fn slowly(city: &PreparedCity, sample_point: &OrientedPoint, gate_m: f64, is_beyond: bool) -> Option<Hit> {
-        let mut best: Option<Hit> = None;
-        for t in (0..city.model.triangles.len() as u32).filter(|t| city.is_exposed(*t)) {
-            let corners = city.corners(t);
-            let [a, b, c] = &corners;
-            let (low, high, p) = (a.inf(b).inf(c), a.sup(b).sup(c), &sample_point.position);
-            if (0..3).all(|k| p[k] > low[k] - gate_m && p[k] < high[k] + gate_m) == is_beyond {
-                continue;
-            }
-            let triangle = TileTriangle::new(t, &corners, city, city.facet_of(t)).unwrap();
-            let Some(hit) = triangle.hit(sample_point) else { continue };
-            if hit.distance_sq() < best.as_ref().map_or(gate_m * gate_m, Hit::distance_sq) {
-                best = Some(hit);
-            }
-        }
-        best
-    }
-
-    #[test]
-    fn agrees_to_the_bit_with_looking_at_every_triangle() {
-        let city = PreparedCity::new(Block::town(2, 2, 5).with_ground(true).city().unwrap());
-        let (low, high) = city.model.bounds().unwrap();
-        let mut random = Random::stream(5, 0);
-        let normals: Vec<Vector3<f64>> = city.model.facets.iter().map(|facet| facet.plane.normal).collect();
-        let (mut found, mut beyond) = (0, 0);
-        for reach_m in [0.3, 1.5, 6.0] {
-            let grid = city.grid(reach_m);
-            for _ in 0..3000 {
-                let position = low + (high - low).map(|extent| extent * (1.4 * random.unit() - 0.2));
-                let off = Vector3::from_fn(|_, _| random.unit() - 0.5);
-                let normal = (normals[random.below(normals.len())] + 0.6 * off).normalize();
-                let (sided, min_cos) = (random.unit() < 0.5, [0.95, 0.9063, 0.12][random.below(3)]);
-                let sample_point = OrientedPoint { position, normal, sided, min_cos };
-                let gate_m = reach_m * random.unit();
-                let told = |hit: &Option<Hit>| {
-                    hit.map(|h| (h.distance_sq().to_bits(), h.plane, h.across_m.to_bits(), h.outside_m.to_bits()))
-                };
-                let fast = city.nearest(&grid, &sample_point, gate_m);
-                // Beyond a sharp corner a triangle seems nearer than it is.
-                let is_seeming = told(&fast) != told(&slowly(&city, &sample_point, gate_m, false));
-                if is_seeming {
-                    assert_eq!(
-                        told(&fast),
-                        told(&slowly(&city, &sample_point, gate_m, true)),
-                        "{sample_point:?} {gate_m}"
-                    );
-                }
-                beyond += usize::from(is_seeming);
-                found += usize::from(fast.is_some());
-            }
-        }
-        assert!(found > 200 && beyond < found / 15, "{found} {beyond}");
-    }
-}
+mod tests;

@@ -11,6 +11,7 @@ mod hit;
 mod patches;
 mod prepared_city;
 mod surface;
+mod tile_triangle;
 mod up_votes;
 mod upright;
 

@@ -354,48 +354,4 @@ fn rows(sample: &Observations, chart: &Chart, bending: &Bending, common: usize) 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::observations::observations;
-    use super::*;
-    use crate::correspondence::test_scene::Made;
-    use crate::synthetic::Offset;
-
-    #[test]
-    fn the_information_is_that_of_least_squares_with_the_dense_covariance() {
-        let made = Made::four_houses();
-        let scene = made.scene(&Offset::default(), Motion::Similarity);
-        let (refiner, pose) = (PoseRefiner::new(&scene), made.truth(&scene));
-        let chart = refiner.assess(&[], &pose, 0.0).chart;
-        let observed = observations(&refiner, &pose, scene.gate_unit_m);
-        let system = System::converged(&refiner, &pose, &chart, &observed);
-        let (n, count) = (system.common, observed.pieces.len());
-        let mut covariance = DMatrix::zeros(count, count);
-        let known = system.known();
-        let mut share = |pieces: &std::ops::Range<usize>, column: usize, variance: f64| {
-            for i in pieces.clone() {
-                for j in pieces.clone() {
-                    covariance[(i, j)] += system.rows[(column, i)] * system.rows[(column, j)] * variance;
-                }
-            }
-        };
-        (POSE..n).for_each(|k| share(&(0..count), k, 1.0 / known[(k, k)]));
-        for (b, building) in observed.buildings.iter().enumerate() {
-            let fronts = &observed.fronts[building.fronts.clone()];
-            let pieces = fronts[0].pieces.start..fronts[fronts.len() - 1].pieces.end;
-            let variance = system.spreads.building[building.kind as usize] / system.building_weights[b];
-            (0..OF_BUILDING).for_each(|k| share(&pieces, n + 1 + k, variance));
-            for f in building.fronts.clone() {
-                let front = &observed.fronts[f];
-                let variance = system.spreads.front[front.kind as usize] / system.front_weights[f];
-                (0..OF_FRONT).for_each(|k| share(&front.pieces, n + 1 + OF_BUILDING + k, variance));
-            }
-        }
-        for i in 0..count {
-            covariance[(i, i)] += system.variance_of_piece(i) / system.piece_weights[i];
-        }
-        let pose_rows = system.rows.rows(0, POSE).transpose();
-        let expected = pose_rows.transpose() * inverse(covariance) * &pose_rows;
-        let found = system.held().full();
-        assert!((found - &expected).norm() < 1e-6 * expected.norm(), "{found} {expected}");
-    }
-}
+mod tests;

@@ -1,0 +1,151 @@
+use super::*;
+
+/// Area of the triangles; all run counter-clockwise.
+fn area(ring: &[[f64; 2]]) -> Option<f64> {
+    let made = triangulate(ring)?;
+    let points = [ring, &made.crossings].concat();
+    let areas = made.triangles.iter().map(|&[a, b, c]| doubled_area(points[a], points[b], points[c]) / 2.0);
+    assert!(areas.clone().all(|area| area >= 0.0));
+    Some(areas.sum())
+}
+
+fn overlaps(ring: &[[f64; 2]]) -> bool {
+    triangulate(ring).unwrap().overlaps
+}
+
+const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
+
+#[test]
+fn concave_rings_keep_their_area() {
+    let l = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
+    assert_eq!(area(&l), Some(6.0));
+    assert_eq!(triangulate(&l).unwrap().triangles.len(), 4);
+    assert!(!overlaps(&l));
+}
+
+#[test]
+fn a_star_of_many_corners_keeps_its_area() {
+    let star: Vec<[f64; 2]> = (0..2000)
+        .map(|at| {
+            let (sin, cos) = (f64::from(at) * std::f64::consts::TAU / 2000.0).sin_cos();
+            let radius = if at % 2 == 0 { 10.0 } else { 4.0 };
+            [radius * cos, radius * sin]
+        })
+        .collect();
+    let expected = 1000.0 * 10.0 * 4.0 * (std::f64::consts::TAU / 2000.0).sin();
+    assert!((area(&star).unwrap() - expected).abs() < 1e-9 * expected);
+    assert_eq!(triangulate(&star).unwrap().triangles.len(), 1998);
+}
+
+/// Of 4,000 corners and one kink, in which two neighbours stand in each other's place.
+#[test]
+fn a_long_outline_with_a_kink_is_kept() {
+    let mut ring: Vec<[f64; 2]> = (0..4000)
+        .map(|at| {
+            let (sin, cos) = (f64::from(at) * std::f64::consts::TAU / 4000.0).sin_cos();
+            [100.0 * cos, 100.0 * sin]
+        })
+        .collect();
+    let whole = area(&ring).unwrap();
+    ring.swap(1000, 1001);
+    assert!((area(&ring).unwrap() / whole - 1.0).abs() < 1e-5);
+    assert!(overlaps(&ring));
+}
+
+#[test]
+fn a_bridged_hole_stays_a_hole() {
+    let hole = [[2.0, 2.0], [2.0, 4.0], [4.0, 4.0], [4.0, 2.0], [2.0, 2.0]];
+    let ring = [&SQUARE[..], &SQUARE[..1], &hole].concat();
+    assert_eq!(area(&ring), Some(96.0));
+    assert!(!overlaps(&ring));
+}
+
+#[test]
+fn a_hole_that_shares_part_of_an_edge_stays_a_hole() {
+    let hole = [[4.0, 0.0], [4.0, 2.0], [7.0, 2.0], [7.0, 0.0], [4.0, 0.0]];
+    let ring = [&SQUARE[..1], &hole, &SQUARE[1..]].concat();
+    assert_eq!(area(&ring), Some(94.0));
+}
+
+#[test]
+fn a_spike_covers_nothing() {
+    let ring = [&SQUARE[..2], &[[15.0, 0.0]], &SQUARE[1..]].concat();
+    assert_eq!(area(&ring), Some(100.0));
+    assert!(!overlaps(&ring));
+}
+
+#[test]
+fn corners_on_an_edge_and_repeated_places_change_nothing() {
+    let ring = [&SQUARE[..1], &[[3.0, 0.0], [6.0, 0.0], [6.0, 0.0]], &SQUARE[1..], &SQUARE[..1]].concat();
+    assert_eq!(area(&ring), Some(100.0));
+}
+
+#[test]
+fn a_ring_that_crosses_itself_keeps_what_lies_inside_an_odd_number_of_times() {
+    // Two squares of 1 and 9 that meet in a crossing.
+    let ring = [[0.0, 0.0], [3.0, 0.0], [3.0, 4.0], [4.0, 4.0], [4.0, 3.0], [0.0, 3.0]];
+    assert!((area(&ring).unwrap() - 10.0).abs() < 1e-12);
+    assert!(overlaps(&ring));
+}
+
+#[test]
+fn a_ball_of_wool_is_given_up_soon() {
+    let at = |step: u64| (step * 7919 % 1999) as f64;
+    let ring: Vec<[f64; 2]> = (0..1999).map(|step| [at(step), at(step * step)]).collect();
+    assert!(triangulate(&ring).is_none());
+}
+
+/// Quadratic in the corners, each of these would take minutes.
+#[test]
+fn rings_of_many_corners_take_about_linear_time() {
+    let count = 200_000;
+    let steps = |count: usize| (0..count).map(move |at| at as f64 / count as f64);
+    // Both long edges of a wall full of corners, as it stands and turned, so that rounding bends the lines.
+    let wall: Vec<[f64; 2]> =
+        steps(count / 2).map(|t| [t, 0.0]).chain(steps(count / 2).map(|t| [1.0 - t, 3e-3])).collect();
+    let (sin, cos) = 0.3_f64.sin_cos();
+    let turned: Vec<[f64; 2]> = wall.iter().map(|[x, y]| [cos * x - sin * y, sin * x + cos * y]).collect();
+    // One corner off a line; a comb; a circle; triangles that all meet in one corner; spikes out of one corner.
+    let apex: Vec<[f64; 2]> = steps(count).map(|t| [t, 0.0]).chain([[0.5, 1.0]]).collect();
+    let comb: Vec<[f64; 2]> =
+        (0..count).map(|at| [at as f64, (at % 2) as f64]).chain([[count as f64, 9.0], [0.0, 9.0]]).collect();
+    let circle: Vec<[f64; 2]> = steps(count).map(|t| (t * std::f64::consts::TAU).sin_cos().into()).collect();
+    let on_rim = |at: usize| <[f64; 2]>::from((3.0 * at as f64 / count as f64).sin_cos()).map(|v| 2.0 * v);
+    let flower: Vec<[f64; 2]> =
+        (0..count / 3).flat_map(|at| [[0.0, 0.0], on_rim(3 * at + 1), on_rim(3 * at)]).collect();
+    let spikes: Vec<[f64; 2]> =
+        SQUARE.into_iter().chain((0..count / 2).flat_map(|at| [[0.0, 0.0], on_rim(at)])).collect();
+    for (name, ring, expected) in [
+        ("wall", wall, 3e-3),
+        ("turned", turned, 3e-3),
+        ("apex", apex, 0.5),
+        ("comb", comb, 8.5 * count as f64),
+        ("circle", circle, std::f64::consts::PI),
+        ("flower", flower, 2.0),
+        ("spikes", spikes, 100.0),
+    ] {
+        let covered = area(&ring).unwrap_or_else(|| panic!("{name} is given up"));
+        assert!((covered - expected).abs() < 1e-4 * expected, "{name}: {covered}");
+    }
+}
+
+#[test]
+fn a_line_walked_up_and_down_is_given_up_soon() {
+    let count = 50_000;
+    let line = (0..count).map(|at| if at % 2 == 0 { [at as f64, 0.0] } else { [(count - at) as f64, 0.0] });
+    let ring: Vec<[f64; 2]> = line.chain([[0.0, 1.0]]).collect();
+    assert!(triangulate(&ring).is_none());
+}
+
+#[test]
+fn no_ring_makes_it_panic() {
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    for round in 0..3000 {
+        let corners = 3 + random.next_u64() % 9;
+        // A coarse grid makes collinear, repeated and touching corners the rule.
+        let grid = if round % 2 == 0 { 5.0 } else { 1e6 };
+        let mut coordinate = || (grid * (random.next_u64() as f64 / u64::MAX as f64)).round();
+        let ring: Vec<[f64; 2]> = (0..corners).map(|_| [coordinate(), coordinate()]).collect();
+        area(&ring);
+    }
+}

@@ -4,15 +4,19 @@
 //! `city_from_cam = city_from_sfm * sfm_from_cam` cancels by reading. *City*: metres, z up, about a local origin.
 //! *Sfm*: one reconstruction's own frame, of arbitrary scale. *Cam*: x right, y down, z forward.
 
+mod axes;
 mod camera;
 mod plane;
 mod rays;
+mod rotation;
 mod similarity;
 mod start;
 
+pub use axes::Axes;
 pub use camera::{Camera, CameraModel};
-pub use plane::Plane;
+pub use plane::{Plane, distance_derivative};
 pub use rays::{RayCaster, Sight};
+pub use rotation::{nearest_rotation, orthonormalised};
 pub use similarity::{NotASimilarity, Similarity};
 pub use start::{Start, StartError, StartSigmas};
 

@@ -33,6 +33,14 @@ impl Plane {
     }
 }
 
+/// How the distance of a point from a plane with this normal changes with a motion: derivatives of `n . x + d` for
+/// `x -> x + omega x y + tau + sigma y` by omega, tau and sigma: `(y x n, n, n . y)`.
+#[inline]
+pub fn distance_derivative(y: &Vector3<f64>, n: &Vector3<f64>) -> [f64; 7] {
+    let turn = y.cross(n);
+    [turn.x, turn.y, turn.z, n.x, n.y, n.z, n.dot(y)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,8 @@
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
+use super::rotation::orthonormalised;
+
 /// How far a matrix may stray from orthonormal (largest entry of `R R^T - I`) and still be taken for a rotation that
 /// was written with few digits.
 const ROTATION_TOLERANCE: f64 = 1e-6;
@@ -53,7 +55,7 @@ impl Similarity {
         if rotation.determinant() < 0.0 {
             return Err(NotASimilarity::Reflection);
         }
-        Ok(Similarity { scale, rotation: nearest_rotation(rotation), translation })
+        Ok(Similarity { scale, rotation: orthonormalised(&rotation), translation })
     }
 
     /// The similarity that turns and scales about `pivot` (source frame) and sends it to `image`.
@@ -88,18 +90,6 @@ impl std::ops::Mul for Similarity {
             translation: self.scale * (self.rotation * inner.translation) + self.translation,
         }
     }
-}
-
-/// Nearest rotation to a nearly orthonormal matrix: Newton's iteration for the polar factor, `R <- (R + R^-T) / 2`.
-fn nearest_rotation(matrix: Matrix3<f64>) -> Rotation3<f64> {
-    let mut r = matrix;
-    // Convergence is quadratic from an error of 1e-6: two steps reach rounding, the third costs nothing.
-    for _ in 0..3 {
-        if let Some(inverse) = r.try_inverse() {
-            r = 0.5 * (r + inverse.transpose());
-        }
-    }
-    Rotation3::from_matrix_unchecked(r)
 }
 
 #[cfg(test)]

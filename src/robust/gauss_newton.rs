@@ -9,7 +9,7 @@
 
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
-use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
+use crate::geometry::{Point3, Rotation3, Similarity, Vector3, distance_derivative};
 
 pub type Matrix7 = SMatrix<f64, 7, 7>;
 pub type Vector7 = SVector<f64, 7>;
@@ -75,8 +75,7 @@ impl Chart {
     #[inline]
     pub fn row(&self, x: &Point3<f64>, n: &Vector3<f64>) -> Vector7 {
         let y = (x - self.center) / self.radius;
-        let turn = y.cross(n);
-        Vector7::from_column_slice(&[turn.x, turn.y, turn.z, n.x, n.y, n.z, n.dot(&y)])
+        Vector7::from(distance_derivative(&y, n))
     }
 
     /// `pose` followed by the motion with these unknowns (metres). A rigid motion leaves the scale as it is, to the bit.

@@ -1,64 +1,118 @@
-//! Linear unknowns out: Householder's triangular form of a few rows, in place, without heap.
+//! Translation and scale out: what remains of the rows are equations of the rotation.
 //!
-//! Every solver of this room writes its rows as `(linear unknowns | functions of the rotation)` and multiplies them
-//! by an orthogonal matrix from the left until the first `K` columns are upper triangular. The rows below the `K`-th
-//! are then free of the linear unknowns and are the equations of the rotation; the first `K` rows give the linear
-//! unknowns back by substitution once the rotation is known. An orthogonal matrix keeps rounding errors small
-//! whatever the planes, where the inverse of three chosen normals would not (mathematics.md 3.4, 12).
+//! ```text
+//! Question    which equations the rows make for the rotation alone, and translation and scale once it is known
+//! Input       rows as numbers: T for the unknowns of the translation | the offset | functions of the rotation. With along(R), linear
+//!             in the latter, for what a row says of R p, each reads
+//!                 normal part . translation + offset + scale along(R) = 0
+//! Method      1. Householder's reflections, an orthogonal matrix from the left, make the first T columns upper triangular, the
+//!                offset's column too where the scale is sought. The rows below are free of these unknowns.
+//!             2. At a rotation the row that has lost the translation but not the offset gives the scale, and the first T rows
+//!                give the translation, from the last to the first.
+//!             An orthogonal matrix keeps rounding errors small whatever the planes, where the inverse of three chosen normals would
+//!             not (mathematics.md 3.4, 12).
+//! Fails when  the normals do not span what the translation is sought in: `None`
+//! Source      Golub and Van Loan, Matrix Computations, 5.2; mathematics.md 2, 7
+//! ```
 
-use super::RANK_TOLERANCE;
+use super::algebra::tolerance::RANK_TOLERANCE;
 
-/// Multiplies `rows` from the left by reflections until their first `K` columns are upper triangular.
-#[inline]
-pub(super) fn eliminate<const M: usize, const C: usize, const K: usize>(rows: &mut [[f64; C]; M]) {
-    for k in 0..K {
-        let mut v = [0.0; M];
-        let mut square = 0.0;
-        for i in k..M {
-            v[i] = rows[i][k];
-            square += v[i] * v[i];
+/// Whether the scale is an unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// It is 1, and offsets are constants beside the rotation.
+    Given,
+    /// Offsets stand beside an unknown factor.
+    Sought,
+}
+
+/// Rows whose first `T` columns are triangular.
+pub struct Eliminated<const T: usize, const M: usize, const C: usize> {
+    rows: [[f64; C]; M],
+    scale: Scale,
+}
+
+impl<const T: usize, const M: usize, const C: usize> Eliminated<T, M, C> {
+    /// `None` where the translation does not follow from the rows.
+    #[inline(always)]
+    pub fn new(mut rows: [[f64; C]; M], scale: Scale) -> Option<Self> {
+        let unknowns = if scale == Scale::Sought { T + 1 } else { T };
+        triangular(&mut rows, unknowns);
+        Eliminated::triangular(rows, scale)
+    }
+
+    /// The same for rows that are triangular as they come.
+    #[inline(always)]
+    pub fn triangular(rows: [[f64; C]; M], scale: Scale) -> Option<Self> {
+        let holds = (0..T).all(|k| rows[k][k].abs() > RANK_TOLERANCE);
+        holds.then_some(Eliminated { rows, scale })
+    }
+
+    /// The last rows: the equations of the rotation. A given scale has left their offsets, in column `T`.
+    #[inline(always)]
+    pub fn equations<const E: usize>(&self) -> [&[f64; C]; E] {
+        std::array::from_fn(|k| &self.rows[M - E + k])
+    }
+
+    /// Scale and translation at a rotation that satisfies the equations; `None` where the scale is not positive: a mirror image.
+    #[inline(always)]
+    pub fn scale_and_translation(&self, along: impl Fn(&[f64; C]) -> f64) -> Option<(f64, [f64; T])> {
+        let scale = match self.scale {
+            Scale::Given => 1.0,
+            Scale::Sought => -self.rows[T][T] / along(&self.rows[T]),
+        };
+        if !(scale > 0.0) {
+            return None;
         }
-        if square == 0.0 {
-            continue;
-        }
-        let norm = square.sqrt();
-        // The sign that adds, never subtracts, in v[k]: no cancellation.
-        let diagonal = if v[k] > 0.0 { -norm } else { norm };
-        let weight = (square - diagonal * v[k]).recip();
-        v[k] -= diagonal;
-        // v is zero above k: loops of fixed length cost some products with zero and gain vector instructions.
-        let mut along = [0.0; C];
-        for i in 0..M {
-            for j in 0..C {
-                along[j] += v[i] * rows[i][j];
+        let mut translation = [0.0; T];
+        for i in (0..T).rev() {
+            let row = &self.rows[i];
+            let mut rest = row[T] + scale * along(row);
+            for j in i + 1..T {
+                rest += row[j] * translation[j];
             }
+            translation[i] = -rest / row[i];
         }
-        for i in 0..M {
-            let step = weight * v[i];
-            for j in 0..C {
-                rows[i][j] -= step * along[j];
-            }
-        }
-        rows[k][k] = diagonal;
-        for row in &mut rows[k + 1..M] {
-            row[k] = 0.0;
-        }
+        Some((scale, translation))
     }
 }
 
-/// Whether the first three columns, triangular normals, span space.
-#[inline]
-pub(super) fn diagonal_holds<const M: usize, const C: usize>(m: &[[f64; C]; M]) -> bool {
-    (0..3).all(|k| m[k][k].abs() > RANK_TOLERANCE)
+/// Multiplies `rows` from the left by reflections until their first columns are upper triangular.
+#[inline(always)]
+pub fn triangular<const C: usize>(rows: &mut [[f64; C]], columns: usize) {
+    // The last row has nothing below it to remove.
+    for k in 0..columns.min(rows.len().saturating_sub(1)) {
+        reflect(&mut rows[k..], k);
+    }
 }
 
-/// Solves the triangular first three rows for the image of the pivot.
-#[inline]
-pub(super) fn back_substitute<const M: usize, const C: usize>(m: &[[f64; C]; M], right: [f64; 3]) -> [f64; 3] {
-    let z = right[2] / m[2][2];
-    let y = (right[1] - m[1][2] * z) / m[1][1];
-    let x = (right[0] - m[0][1] * y - m[0][2] * z) / m[0][0];
-    [x, y, z]
+/// Reflects the rows so that their column `k` vanishes below the first.
+#[inline(always)]
+fn reflect<const C: usize>(rows: &mut [[f64; C]], k: usize) {
+    let square: f64 = rows.iter().map(|row| row[k] * row[k]).sum();
+    if square == 0.0 {
+        return;
+    }
+    let norm = square.sqrt();
+    // The sign that adds, never subtracts, in the difference below: no cancellation.
+    let diagonal = if rows[0][k] > 0.0 { -norm } else { norm };
+    let weight = (square - diagonal * rows[0][k]).recip();
+    // From here on column k holds the vector that the rows are reflected along.
+    rows[0][k] -= diagonal;
+    let mut along = [0.0; C];
+    for row in rows.iter() {
+        for j in 0..C {
+            along[j] += row[k] * row[j];
+        }
+    }
+    for row in rows.iter_mut() {
+        let step = weight * row[k];
+        for j in 0..C {
+            row[j] -= step * along[j];
+        }
+        row[k] = 0.0;
+    }
+    rows[0][k] = diagonal;
 }
 
 #[cfg(test)]
@@ -72,7 +126,7 @@ mod tests {
         for row in &mut rows {
             row[3] = row[0] * x[0] + row[1] * x[1] + row[2] * x[2];
         }
-        eliminate::<4, 4, 3>(&mut rows);
+        triangular(&mut rows, 3);
         assert!(rows[3].iter().all(|v| v.abs() < 1e-15), "{rows:?}");
         for (k, row) in rows[..3].iter().enumerate() {
             assert!(row[..k].iter().all(|&v| v == 0.0));
@@ -81,9 +135,25 @@ mod tests {
     }
 
     #[test]
+    fn scale_and_translation_come_back_at_the_rotation() {
+        let (scale, translation) = (1.7, [0.3, -1.2]);
+        let mut rows = [[1.0, 2.0, 0.0, 0.7], [0.3, 1.5, 0.0, -2.0], [-3.0, 0.2, 0.0, 1.1], [0.4, 0.1, 0.0, 0.2]];
+        for row in &mut rows {
+            row[2] = -(row[0] * translation[0] + row[1] * translation[1] + scale * row[3]);
+        }
+        let eliminated = Eliminated::<2, 4, 4>::new(rows, Scale::Sought).unwrap();
+        let [equation] = eliminated.equations();
+        assert!(equation.iter().all(|v| v.abs() < 1e-15), "{equation:?}");
+        let (found_scale, found) = eliminated.scale_and_translation(|row| row[3]).unwrap();
+        assert!((found_scale - scale).abs() < 1e-14);
+        assert!(found.iter().zip(translation).all(|(a, b)| (a - b).abs() < 1e-14));
+    }
+
+    #[test]
     fn a_column_of_zeros_is_passed_over() {
         let mut rows = [[0.0, 1.0], [0.0, 2.0]];
-        eliminate::<2, 2, 1>(&mut rows);
+        triangular(&mut rows, 1);
         assert_eq!(rows, [[0.0, 1.0], [0.0, 2.0]]);
+        assert!(Eliminated::<1, 2, 2>::new(rows, Scale::Given).is_none());
     }
 }

@@ -2,45 +2,13 @@
 
 use std::fmt;
 
-use super::{
-    Poses, Row, Up, se3_6pt, se3_321, se3_322, se3_331, se3_332, se3_333, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211,
-    sim3_31111, sim3_pair_5pt, upright_se3_4pt, upright_sim3_5pt,
+use super::minimal::{
+    se3_6pt, se3_321, se3_322, se3_331, se3_332, se3_333, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211, sim3_31111,
+    sim3_pair_5pt, upright_se3_4pt, upright_sim3_5pt,
 };
-
-/// What is unknown of the pose.
-#[derive(Clone, Copy, Debug)]
-pub enum Sought {
-    /// Rotation and translation: 6 rows.
-    Rigid,
-    /// Rotation, translation and scale: 7 rows.
-    Similarity,
-    /// Heading and translation: 4 rows.
-    UprightRigid(Up),
-    /// Heading, translation and scale: 5 rows.
-    UprightSimilarity(Up),
-}
-
-impl Sought {
-    /// Unknowns of the pose: rows of a minimal sample.
-    pub fn unknowns(&self) -> usize {
-        match self {
-            Sought::Rigid => 6,
-            Sought::Similarity => 7,
-            Sought::UprightRigid(_) => 4,
-            Sought::UprightSimilarity(_) => 5,
-        }
-    }
-
-    /// What a result calls it.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Sought::Rigid => "rigid",
-            Sought::Similarity => "similarity",
-            Sought::UprightRigid(_) => "upright rigid",
-            Sought::UprightSimilarity(_) => "upright similarity",
-        }
-    }
-}
+use super::poses::Poses;
+use super::row::Row;
+use super::sought::Sought;
 
 /// One configuration, and what a sample of it costs: for a choice by expected cost, time per sample times expected trials.
 #[derive(Clone, Copy, Debug)]
@@ -151,5 +119,20 @@ fn similarity(points_per_plane: &[usize], rows: &[Row]) -> Poses {
         [3, 1, 1, 1, 1] => with(rows, sim3_31111),
         [2, ..] => with(rows, sim3_pair_5pt),
         _ => with(rows, sim3_7pt),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solvers::scene::{Chance, sample};
+
+    #[test]
+    fn a_sample_with_the_wrong_number_of_rows_has_no_poses() {
+        let rows = sample(&mut Chance::new(1), &Sought::Rigid, &[3, 2, 1]).rows;
+        assert!(solve_minimal(&Sought::Rigid, &[3, 2, 1], &rows[..5]).is_empty());
+        assert!(solve_minimal(&Sought::Rigid, &[3, 2], &rows[..5]).is_empty());
+        assert!(solve_minimal(&Sought::Similarity, &[3, 2, 1], &rows).is_empty());
+        assert!(!solve_minimal(&Sought::Rigid, &[3, 2, 1], &rows).is_empty());
     }
 }

@@ -16,9 +16,10 @@
 //! Tests       below; examples/figure4.rs
 //! ```
 
-use super::Row;
-use super::singular::Singular;
-use crate::geometry::{Matrix3, Rotation3, Similarity, Vector3};
+use crate::geometry::{Matrix3, Similarity, Vector3, nearest_rotation};
+
+use super::algebra::singular::Singular;
+use super::row::{Row, centroid};
 
 /// Singular values below this, relative to the largest, count as zero.
 const NO_INFORMATION: f64 = 1e-10;
@@ -36,7 +37,7 @@ pub fn linear_least_squares(rows: &[Row]) -> Option<LinearFit> {
         return None;
     }
     let count = rows.len() as f64;
-    let centroid = rows.iter().map(|row| row.point).sum::<Vector3<f64>>() / count;
+    let centroid = centroid(rows);
     let spread_sq = rows.iter().map(|row| (row.point - centroid).norm_squared()).sum::<f64>() / count;
     if !(spread_sq > 0.0) {
         return None;
@@ -57,28 +58,15 @@ pub fn linear_least_squares(rows: &[Row]) -> Option<LinearFit> {
     let normals: Vec<[f64; 3]> = rows.iter().map(|row| row.normal.into()).collect();
     let heights: Vec<f64> =
         rows.iter().map(|row| -row.offset - row.normal.dot(&(rotation * (row.point - centroid)))).collect();
-    let image = Vector3::from(Singular::of(&normals).least_squares(&heights, NO_INFORMATION));
-    let rotation = Rotation3::from_matrix_unchecked(rotation);
+    let image = Vector3::from_vec(Singular::of(&normals).least_squares(&heights, NO_INFORMATION));
     Some(LinearFit { object_from_sensor: Similarity::about(&centroid.into(), &image.into(), 1.0, rotation), rank })
-}
-
-/// U diag(1, 1, det U V^T) V^T for A = U S V^T.
-fn nearest_rotation(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
-    let svd = matrix.svd(true, true);
-    let (mut u, v_t) = (svd.u?, svd.v_t?);
-    if (u * v_t).determinant() < 0.0 {
-        // nalgebra sorts the singular values, so the last column belongs to the smallest.
-        u.column_mut(2).neg_mut();
-    }
-    let rotation = u * v_t;
-    rotation.iter().all(|v| v.is_finite()).then_some(rotation)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::scene::{Chance, angle_between_rad, sample};
-    use super::super::{Sought, refine};
     use super::*;
+    use crate::solvers::scene::{Chance, angle_between_rad, sample};
+    use crate::solvers::{Sought, refine};
 
     #[test]
     fn twelve_points_on_four_planes_give_the_pose_and_three_planes_give_rank_nine() {

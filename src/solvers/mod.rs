@@ -31,57 +31,28 @@
 // `!(a > b)` is meant: it refuses NaN. Loops over matrix indices read like the formulas that they are.
 #![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
 
-mod circle;
-mod degeneracy;
+mod algebra;
 mod elimination;
 mod family;
-mod forms;
-mod frame;
-mod general;
 mod linear;
-mod normalised;
-mod polish;
-mod polynomial;
+mod minimal;
 mod poses;
-mod quadrics;
-mod quaternion;
-mod row;
 pub mod primitives;
+mod row;
 pub mod scene;
-mod same_planes;
-mod singular;
-mod triple;
-mod two_angle;
-mod two_triples;
-mod upright;
+mod sought;
+mod thorough;
+mod turn;
+mod up;
 
-pub use degeneracy::{Degeneracy, NOT_ISOLATED, WEAK, condition_at};
-pub use family::{Configuration, RIGID, SIMILARITY, Sought, UPRIGHT_RIGID, UPRIGHT_SIMILARITY, solve_minimal};
-pub use general::{Solution, refine, solve};
+pub use family::{Configuration, RIGID, SIMILARITY, UPRIGHT_RIGID, UPRIGHT_SIMILARITY, solve_minimal};
 pub use linear::{LinearFit, linear_least_squares};
+pub use minimal::{
+    se3_6pt, se3_321, se3_322, se3_331, se3_332, se3_333, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211, sim3_31111,
+    sim3_pair_5pt, upright_se3_4pt, upright_sim3_5pt,
+};
 pub use poses::{MOST_POSES, Poses};
-pub use quadrics::{se3_6pt, sim3_7pt};
 pub use row::Row;
-pub use triple::{se3_321, se3_322, se3_3111, sim3_3211, sim3_31111};
-pub use two_angle::{se3_pair_4pt, sim3_pair_5pt};
-pub use two_triples::{se3_331, se3_332, se3_333};
-pub use upright::{Up, upright_se3_4pt, upright_sim3_5pt};
-
-/// What vanishes beside quantities of size 1: a diagonal entry of the triangular normals, the area of a triple, the
-/// radius of a line's circle. Rounding leaves some 1e-16; random scenes come below 1e-10 once in ten thousand million.
-const RANK_TOLERANCE: f64 = 1e-12;
-
-#[cfg(test)]
-mod tests {
-    use super::scene::{Chance, sample};
-    use super::*;
-
-    #[test]
-    fn a_sample_with_the_wrong_number_of_rows_has_no_poses() {
-        let rows = sample(&mut Chance::new(1), &Sought::Rigid, &[3, 2, 1]).rows;
-        assert!(solve_minimal(&Sought::Rigid, &[3, 2, 1], &rows[..5]).is_empty());
-        assert!(solve_minimal(&Sought::Rigid, &[3, 2], &rows[..5]).is_empty());
-        assert!(solve_minimal(&Sought::Similarity, &[3, 2, 1], &rows).is_empty());
-        assert!(!solve_minimal(&Sought::Rigid, &[3, 2, 1], &rows).is_empty());
-    }
-}
+pub use sought::Sought;
+pub use thorough::{Degeneracy, NOT_ISOLATED, Solution, WEAK, condition_at, refine, solve};
+pub use up::Up;

@@ -2,8 +2,10 @@
 
 use crate::geometry::{Matrix3, Rotation3, Similarity, Vector3};
 
-/// Three quadrics meet in at most eight points, so no minimal problem here has more poses.
-pub const MOST_POSES: usize = 8;
+use super::algebra::common_points::MOST_POINTS;
+
+/// No minimal problem here has more solutions than three quadrics have common points.
+pub const MOST_POSES: usize = MOST_POINTS;
 
 /// `object_from_sensor` poses of one minimal sample. An empty list is an answer: no real pose, or a degenerate sample.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +23,19 @@ const NOWHERE: Similarity = Similarity {
 impl Poses {
     pub fn none() -> Poses {
         Poses { poses: [NOWHERE; MOST_POSES], len: 0 }
+    }
+
+    /// Adds the pose that turns and scales about `pivot` and sends it to `image`.
+    #[inline]
+    pub(super) fn push_about(
+        &mut self,
+        pivot: &Vector3<f64>,
+        image: &Vector3<f64>,
+        scale: f64,
+        rotation: Matrix3<f64>,
+    ) {
+        let translation = image - scale * (rotation * pivot);
+        self.push(Similarity { scale, rotation: Rotation3::from_matrix_unchecked(rotation), translation });
     }
 
     /// Adds a pose; one that is not finite, or that would be the ninth, is left out.

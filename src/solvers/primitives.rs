@@ -58,9 +58,9 @@
 //! | similarity: 2 points on lines and a point; point on point and 2 points; point on line and 3 points | 5 | 2, of which 1.5 to 1.6 with scale > 0 |
 //! | similarity: 3 points on lines; 2 points on points | 6 | 1 |
 
-use super::Row;
-use super::frame::Axes;
-use crate::geometry::Vector3;
+use crate::geometry::{Axes, Vector3};
+
+use super::row::Row;
 
 /// What the sensor saw. Directions and normals may have any length, and carry no sense.
 #[derive(Clone, Copy, Debug, PartialEq)]

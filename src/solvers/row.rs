@@ -24,3 +24,8 @@ impl Row {
         planes.map(|(normal, offset)| Row { point, normal, offset })
     }
 }
+
+/// Mean of the points.
+pub fn centroid(rows: &[Row]) -> Vector3<f64> {
+    rows.iter().map(|row| row.point).sum::<Vector3<f64>>() / rows.len() as f64
+}

@@ -3,11 +3,15 @@
 //! Planes with uniform normals pass through uniform points of a cube of side 100; points lie uniformly on the planes inside
 //! the cube. The pose that is sought is uniform.
 
-use super::{Row, Sought, Up};
-use crate::geometry::{Rotation3, Similarity, UnitQuaternion, Vector3};
 use nalgebra::Quaternion;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::geometry::{Rotation3, Similarity, UnitQuaternion, Vector3};
+
+use super::row::Row;
+use super::sought::Sought;
+use super::up::Up;
 
 /// Side of the cube; the unit is arbitrary.
 pub const SIDE: f64 = 100.0;

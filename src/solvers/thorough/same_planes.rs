@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use crate::geometry::Vector3;
 
 /// Sine below which two normals have the same direction, and relative difference below which their offsets agree.
-pub(super) const SAME_PLANE: f64 = 1e-12;
+pub const SAME_PLANE: f64 = 1e-12;
 
 /// How far apart the coordinates of one plane can be: its normals by the sine; the logarithms of its offsets by twice the relative
 /// difference, and by their rounding.
@@ -24,19 +24,19 @@ type Cell = ([i64; 4], i8);
 const NONE: u32 = u32::MAX;
 
 /// The planes of rows with unit normals.
-pub(super) struct SamePlanes {
+pub struct SamePlanes {
     /// Index of the plane of each row.
     pub plane_of: Vec<usize>,
     pub planes: usize,
 }
 
-pub(super) fn parallel(a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
+pub fn parallel(a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
     a.cross(b).norm() < SAME_PLANE
 }
 
 impl SamePlanes {
     /// A row belongs to the first plane whose first row has the same plane.
-    pub(super) fn of(normals: &[Vector3<f64>], offsets: &[f64]) -> SamePlanes {
+    pub fn of(normals: &[Vector3<f64>], offsets: &[f64]) -> SamePlanes {
         let same = |a: usize, b: usize| {
             let sense = if normals[a].dot(&normals[b]) > 0.0 { 1.0 } else { -1.0 };
             let size = offsets[a].abs() + offsets[b].abs();

@@ -1,10 +1,10 @@
 //! Right-handed orthonormal axes with a given third one.
 
-use crate::geometry::Vector3;
+use nalgebra::Vector3;
 
 /// Three orthonormal right-handed axes; coordinates in them are `(v . x, v . y, v . z)`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axes {
+pub struct Axes {
     pub x: Vector3<f64>,
     pub y: Vector3<f64>,
     pub z: Vector3<f64>,
@@ -15,7 +15,7 @@ impl Axes {
     /// special; the two tangents follow without a square root (Duff et al., "Building an orthonormal basis,
     /// revisited", JCGT 2017).
     #[inline]
-    pub(super) fn about(z: &Vector3<f64>) -> Axes {
+    pub fn about(z: &Vector3<f64>) -> Axes {
         let sign = if z.z < 0.0 { -1.0 } else { 1.0 };
         let a = -1.0 / (sign + z.z);
         let b = z.x * z.y * a;
@@ -27,12 +27,12 @@ impl Axes {
     }
 
     #[inline]
-    pub(super) fn coordinates(&self, v: &Vector3<f64>) -> [f64; 3] {
+    pub fn coordinates(&self, v: &Vector3<f64>) -> [f64; 3] {
         [self.x.dot(v), self.y.dot(v), self.z.dot(v)]
     }
 
     #[inline]
-    pub(super) fn vector(&self, x: f64, y: f64, z: f64) -> Vector3<f64> {
+    pub fn vector(&self, x: f64, y: f64, z: f64) -> Vector3<f64> {
         self.x * x + self.y * y + self.z * z
     }
 }

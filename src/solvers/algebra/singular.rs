@@ -7,21 +7,24 @@ const MOST_SWEEPS: usize = 40;
 const ORTHOGONAL: f64 = 1e-15;
 
 /// `A V = U S`: the rotated columns `u_j s_j`, and V.
-pub(super) struct Singular<const K: usize> {
-    columns: [Vec<f64>; K],
-    turned: [[f64; K]; K],
+pub struct Singular {
+    columns: Vec<Vec<f64>>,
+    turned: Vec<Vec<f64>>,
     /// Lengths of the columns, in their order (not sorted).
-    values: [f64; K],
+    values: Vec<f64>,
 }
 
-impl<const K: usize> Singular<K> {
-    pub(super) fn of(rows: &[[f64; K]]) -> Singular<K> {
-        let mut columns: [Vec<f64>; K] = std::array::from_fn(|j| rows.iter().map(|row| row[j]).collect());
-        let mut turned = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
+impl Singular {
+    /// Of a matrix, row by row; all rows have one length.
+    pub fn of<R: AsRef<[f64]>>(rows: &[R]) -> Singular {
+        let width = rows.first().map_or(0, |row| row.as_ref().len());
+        let mut columns: Vec<Vec<f64>> = (0..width).map(|j| rows.iter().map(|row| row.as_ref()[j]).collect()).collect();
+        let mut turned: Vec<Vec<f64>> =
+            (0..width).map(|i| (0..width).map(|j| f64::from(u8::from(i == j))).collect()).collect();
         for _ in 0..MOST_SWEEPS {
             let mut rotated = false;
-            for p in 0..K {
-                for q in p + 1..K {
+            for p in 0..width {
+                for q in p + 1..width {
                     rotated |= rotate(&mut columns, &mut turned, p, q);
                 }
             }
@@ -29,33 +32,33 @@ impl<const K: usize> Singular<K> {
                 break;
             }
         }
-        let values = std::array::from_fn(|j| dot(&columns[j], &columns[j]).sqrt());
+        let values = columns.iter().map(|column| dot(column, column).sqrt()).collect();
         Singular { columns, turned, values }
     }
 
-    pub(super) fn largest(&self) -> f64 {
+    pub fn largest(&self) -> f64 {
         self.values.iter().copied().fold(0.0, f64::max)
     }
 
-    pub(super) fn smallest(&self) -> f64 {
+    pub fn smallest(&self) -> f64 {
         self.values.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Descending.
-    pub(super) fn sorted(&self) -> [f64; K] {
-        let mut sorted = self.values;
+    pub fn sorted(&self) -> Vec<f64> {
+        let mut sorted = self.values.clone();
         sorted.sort_by(|a, b| b.total_cmp(a));
         sorted
     }
 
     /// The shortest x with least `|A x - b|`, directions with a singular value below `tolerance` times the largest left out.
-    pub(super) fn least_squares(&self, b: &[f64], tolerance: f64) -> [f64; K] {
+    pub fn least_squares(&self, b: &[f64], tolerance: f64) -> Vec<f64> {
         let floor = tolerance * self.largest();
-        let mut x = [0.0; K];
-        for j in 0..K {
+        let mut x = vec![0.0; self.values.len()];
+        for j in 0..x.len() {
             if self.values[j] > floor && self.values[j] > 0.0 {
                 let share = dot(&self.columns[j], b) / self.values[j] / self.values[j];
-                for i in 0..K {
+                for i in 0..x.len() {
                     x[i] += self.turned[j][i] * share;
                 }
             }
@@ -64,7 +67,8 @@ impl<const K: usize> Singular<K> {
     }
 }
 
-fn rotate<const K: usize>(columns: &mut [Vec<f64>; K], turned: &mut [[f64; K]; K], p: usize, q: usize) -> bool {
+/// Makes two columns orthogonal; false where they are.
+fn rotate(columns: &mut [Vec<f64>], turned: &mut [Vec<f64>], p: usize, q: usize) -> bool {
     let (pp, qq) = (dot(&columns[p], &columns[p]), dot(&columns[q], &columns[q]));
     let pq = dot(&columns[p], &columns[q]);
     if pq == 0.0 || pq.abs() <= ORTHOGONAL * (pp * qq).sqrt() {
@@ -74,13 +78,11 @@ fn rotate<const K: usize>(columns: &mut [Vec<f64>; K], turned: &mut [[f64; K]; K
     let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
     let cos = 1.0 / tangent.hypot(1.0);
     let sin = cos * tangent;
-    let (left, right) = columns.split_at_mut(q);
-    for (a, b) in left[p].iter_mut().zip(&mut right[0]) {
-        (*a, *b) = (cos * *a - sin * *b, sin * *a + cos * *b);
-    }
-    for i in 0..K {
-        let (a, b) = (turned[p][i], turned[q][i]);
-        (turned[p][i], turned[q][i]) = (cos * a - sin * b, sin * a + cos * b);
+    for matrix in [columns, turned] {
+        let (left, right) = matrix.split_at_mut(q);
+        for (a, b) in left[p].iter_mut().zip(&mut right[0]) {
+            (*a, *b) = (cos * *a - sin * *b, sin * *a + cos * *b);
+        }
     }
     true
 }

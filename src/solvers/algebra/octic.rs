@@ -18,8 +18,10 @@
 //! Tests       below
 //! ```
 
+use super::bernstein::{Interval, halves, sign_changes};
+
 /// Most candidates handed up: eight roots, and room for nearly double ones given twice.
-pub(super) const MOST_ROOTS: usize = 16;
+pub const MOST_ROOTS: usize = 16;
 
 /// Width of an interval that is halved no further. Coefficients carry a relative error of some 1e-15, and a double root
 /// splits by its square root, 3e-8, into two real ones or two complex ones; an interval must be wide beside that for its
@@ -35,17 +37,29 @@ const MOST_STEPS: usize = 60;
 /// A step in t below which the root is handed up: Newton's next error is its square.
 const CLOSE: f64 = 1e-8;
 
+/// One of the two charts of the projective line.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Side {
+    /// `|x| <= |w|`, t = x / w.
+    Inner,
+    /// `|w| <= |x|`, t = w / x.
+    Outer,
+}
+
 /// Candidates `(x, w)` for the roots, the larger of the two being 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Roots {
+pub struct Roots {
     roots: [[f64; 2]; MOST_ROOTS],
     len: usize,
 }
 
 impl Roots {
-    fn push(&mut self, reversed: bool, t: f64) {
+    fn push(&mut self, side: Side, t: f64) {
         if self.len < MOST_ROOTS {
-            self.roots[self.len] = if reversed { [1.0, t] } else { [t, 1.0] };
+            self.roots[self.len] = match side {
+                Side::Inner => [t, 1.0],
+                Side::Outer => [1.0, t],
+            };
             self.len += 1;
         }
     }
@@ -60,43 +74,27 @@ impl std::ops::Deref for Roots {
 }
 
 /// Real roots of the binary octic with coefficients `c[i]` of `x^i w^(8-i)`.
-pub(super) fn real_roots(c: &[f64; 9]) -> Roots {
+pub fn real_roots(c: &[f64; 9]) -> Roots {
     let mut roots = Roots { roots: [[0.0; 2]; MOST_ROOTS], len: 0 };
     let sum: f64 = c.iter().sum();
     if sum.is_finite() {
-        in_chart(c, false, &mut roots);
+        on_side(c, Side::Inner, &mut roots);
         let reversed = std::array::from_fn(|i| c[8 - i]);
-        in_chart(&reversed, true, &mut roots);
+        on_side(&reversed, Side::Outer, &mut roots);
     }
     roots
 }
 
-/// An interval `[at, at + width]` in t with the polynomial's Bernstein coefficients over it.
-#[derive(Clone, Copy)]
-struct Interval {
-    bernstein: [f64; 9],
-    at: f64,
-    width: f64,
-}
-
-impl Interval {
-    /// Seen from its other end.
-    fn mirrored(mut self) -> Interval {
-        self.bernstein.reverse();
-        self
-    }
-}
-
-fn in_chart(c: &[f64; 9], reversed: bool, roots: &mut Roots) {
+fn on_side(c: &[f64; 9], side: Side, roots: &mut Roots) {
     // Depth first; each halving leaves one interval waiting, and there are at most 21 halvings.
     let mut waiting = [Interval { bernstein: [0.0; 9], at: 0.0, width: 0.0 }; 32];
-    waiting[0] = Interval { bernstein: bernstein(c), at: -1.0, width: 2.0 };
+    waiting[0] = Interval::whole(c);
     let mut len = 1;
     // A root at an end belongs to the chart |x| <= |w| alone. Axis-aligned boxes have double roots there.
     let whole = waiting[0];
     for (end, outward) in [(-1.0, whole), (1.0, whole.mirrored())] {
-        for _ in 0..if reversed { 0 } else { roots_at_start(&outward) } {
-            roots.push(reversed, end);
+        for _ in 0..if side == Side::Inner { roots_at_start(&outward) } else { 0 } {
+            roots.push(side, end);
         }
     }
     for _ in 0..MOST_INTERVALS {
@@ -107,15 +105,15 @@ fn in_chart(c: &[f64; 9], reversed: bool, roots: &mut Roots) {
         let interval = waiting[len];
         match sign_changes(&interval.bernstein) {
             0 => {}
-            1 => roots.push(reversed, bracketed_root(c, &interval)),
+            1 => roots.push(side, bracketed_root(c, &interval)),
             _ if interval.width < NEAREST => {
-                roots.push(reversed, interval.at);
-                roots.push(reversed, interval.at + interval.width);
+                roots.push(side, interval.at);
+                roots.push(side, interval.at + interval.width);
             }
             _ => {
                 let (left, right) = halves(&interval);
                 for _ in 0..roots_at_start(&right) {
-                    roots.push(reversed, right.at);
+                    roots.push(side, right.at);
                 }
                 waiting[len] = right;
                 waiting[len + 1] = left;
@@ -123,37 +121,6 @@ fn in_chart(c: &[f64; 9], reversed: bool, roots: &mut Roots) {
             }
         }
     }
-}
-
-/// Sign changes among the coefficients that are not zero.
-#[inline]
-fn sign_changes(b: &[f64; 9]) -> u32 {
-    let mut changes = 0;
-    let mut last = 0.0;
-    for &v in b {
-        changes += u32::from(v * last < 0.0);
-        if v != 0.0 {
-            // The sign alone: a product of two small coefficients must not underflow to zero.
-            last = v.signum();
-        }
-    }
-    changes
-}
-
-/// De Casteljau at the middle: the first entries of the rounds are the left half, the last ones the right half.
-#[inline]
-fn halves(interval: &Interval) -> (Interval, Interval) {
-    let mut b = interval.bernstein;
-    let mut left = [0.0; 9];
-    left[0] = b[0];
-    for round in 1..9 {
-        for i in 0..9 - round {
-            b[i] = 0.5 * (b[i] + b[i + 1]);
-        }
-        left[round] = b[0];
-    }
-    let width = 0.5 * interval.width;
-    (Interval { bernstein: left, at: interval.at, width }, Interval { bernstein: b, at: interval.at + width, width })
 }
 
 /// Roots at the very start of an interval: one where the polynomial vanishes there, two where it hardly changes besides or
@@ -210,50 +177,6 @@ fn value_and_slope(c: &[f64; 9], t: f64) -> (f64, f64) {
         value = value * t + c[i];
     }
     (value, slope)
-}
-
-/// Bernstein coefficients over [-1, 1]. With u + v = 1 and t = u - v, t^i = (u - v)^i (u + v)^(8-i); its coefficient
-/// of u^j v^(8-j) divided by the binomial (8 over j) is the j-th Bernstein coefficient.
-#[inline]
-fn bernstein(c: &[f64; 9]) -> [f64; 9] {
-    let mut b = [0.0; 9];
-    for i in 0..9 {
-        for j in 0..9 {
-            b[j] += c[i] * FROM_POWERS[i][j];
-        }
-    }
-    b
-}
-
-const FROM_POWERS: [[f64; 9]; 9] = from_powers();
-
-const fn from_powers() -> [[f64; 9]; 9] {
-    let binomial = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
-    let mut table = [[0.0; 9]; 9];
-    let mut i = 0;
-    while i < 9 {
-        // Multiply 1 by (u - v) i times and by (u + v) the rest of the times.
-        let mut product = [0.0; 9];
-        product[0] = 1.0;
-        let mut factor = 0;
-        while factor < 8 {
-            let v = if factor < i { -1.0 } else { 1.0 };
-            let mut j = factor + 1;
-            while j > 0 {
-                product[j] = product[j - 1] + v * product[j];
-                j -= 1;
-            }
-            product[0] *= v;
-            factor += 1;
-        }
-        let mut j = 0;
-        while j < 9 {
-            table[i][j] = product[j] / binomial[j];
-            j += 1;
-        }
-        i += 1;
-    }
-    table
 }
 
 #[cfg(test)]

@@ -4,12 +4,13 @@
 
 use std::collections::HashSet;
 
-use super::degeneracy::Degeneracy;
+use super::degeneracy::{Degeneracy, condition};
 use super::forms::{Form, forms_of};
 use super::same_planes::{SAME_PLANE, SamePlanes, parallel};
-use super::singular::Singular;
-use super::{Row, Sought};
-use crate::geometry::Vector3;
+use crate::geometry::{Matrix3, Rotation3, Similarity, Vector3};
+use crate::solvers::algebra::singular::Singular;
+use crate::solvers::row::Row;
+use crate::solvers::sought::Sought;
 
 /// Singular value of the normals, relative to the largest, below which they lie in one plane.
 const NORMAL_RANK: f64 = 1e-10;
@@ -27,15 +28,18 @@ const EXTENT: f64 = 1e-11;
 /// it far away.
 const NEAR: f64 = 1e-2;
 
+/// Singular values below this, relative to the largest, carry no information.
+pub const NO_INFORMATION: f64 = 1e-13;
+
 /// A problem in units of its own, past the structural tests.
-pub(super) struct Normalised {
+pub struct Normalised {
     pub sought: Sought,
     /// Unit normals; points about `centroid` in units of `spread`; offsets about `near` in units of `unit`.
     pub rows: Vec<Row>,
     /// The rows, or what they come to where they are many: what solving sees.
     pub forms: Vec<Form>,
     /// The normals of the forms as a matrix.
-    pub normals: Singular<3>,
+    normals: Singular,
     /// Index of the plane of each row: rows of the same plane share it.
     plane_of: Vec<usize>,
     pub centroid: Vector3<f64>,
@@ -52,7 +56,7 @@ struct Scaled {
 }
 
 impl Normalised {
-    pub(super) fn new(sought: &Sought, rows: &[Row]) -> Result<Normalised, Degeneracy> {
+    pub fn new(sought: &Sought, rows: &[Row]) -> Result<Normalised, Degeneracy> {
         let rows = different(rows);
         if rows.len() < sought.unknowns() {
             return Err(Degeneracy::TooFewRows { rows: rows.len(), unknowns: sought.unknowns() });
@@ -83,7 +87,7 @@ impl Normalised {
 
     /// Every plane supplies at most as many independent rows as its points span dimensions, and one.
     fn check_points(&self) -> Result<(), Degeneracy> {
-        if matches!(self.sought, Sought::UprightRigid(_) | Sought::UprightSimilarity(_)) {
+        if self.sought.up().is_some() {
             return Ok(());
         }
         let (mut rank, mut crowded) = (0, false);
@@ -108,17 +112,28 @@ impl Normalised {
 
     /// What is free at one arbitrary rotation is free at every pose.
     fn check_motion(&self) -> Result<(), Degeneracy> {
-        let turn = crate::geometry::Rotation3::from_euler_angles(0.71, -0.43, 1.27).into_inner();
-        let turn = match &self.sought {
-            Sought::Rigid | Sought::Similarity => turn,
-            Sought::UprightRigid(up) | Sought::UprightSimilarity(up) => up.rotation(0.6, 0.8),
+        let turn = match self.sought.up() {
+            None => Rotation3::from_euler_angles(0.71, -0.43, 1.27).into_inner(),
+            Some(up) => up.rotation(0.6, 0.8),
         };
         let images: Vec<Vector3<f64>> = self.rows.iter().map(|row| turn * row.point).collect();
         let normals: Vec<Vector3<f64>> = self.rows.iter().map(|row| row.normal).collect();
-        if super::degeneracy::condition(&self.sought, &images, &normals) < SAME_PLANE {
+        if condition(&self.sought, &images, &normals) < SAME_PLANE {
             return Err(Degeneracy::FreeMotion);
         }
         Ok(())
+    }
+
+    /// The translation that fits best to what the forms say without it.
+    pub fn foot_of(&self, heights: &[f64]) -> Vector3<f64> {
+        Vector3::from_vec(self.normals.least_squares(heights, NO_INFORMATION))
+    }
+
+    /// A pose in the units that the rows came in.
+    pub fn similarity(&self, scale: f64, rotation: &Matrix3<f64>, translation: &Vector3<f64>) -> Similarity {
+        let scale = if self.sought.is_similarity() { scale * self.unit / self.spread } else { 1.0 };
+        let translation = self.near + self.unit * translation - scale * (rotation * self.centroid);
+        Similarity { scale, rotation: Rotation3::from_matrix_unchecked(*rotation), translation }
     }
 
     /// The rows, those of one plane after the other.
@@ -132,7 +147,7 @@ impl Normalised {
     /// points are collinear. Of each plane: a point far from its first, one far from that, one far from the line through both.
     /// No triangle on the plane has more than four times its area: its sides are at most twice as long, and its height is
     /// at most twice the last distance.
-    pub(super) fn largest_triangle(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    pub fn largest_triangle(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let mut best = (EXTENT, None);
         for on in self.by_plane().chunk_by(|&a, &b| self.plane_of[a] == self.plane_of[b]) {
             let points = || on.iter().map(|&row| self.rows[row].point);
@@ -237,7 +252,7 @@ impl Planes {
 
     /// Root mean square of the offsets about the common point; refused where the planes do meet there.
     fn size_apart(&self, offsets: &[f64]) -> Result<f64, Degeneracy> {
-        let foot = Vector3::from(Singular::of(&self.matrix()).least_squares(offsets, 0.0));
+        let foot = Vector3::from_vec(Singular::of(&self.matrix()).least_squares(offsets, 0.0));
         let apart = offsets.iter().zip(&self.normals).map(|(e, n)| (e - n.dot(&foot)).abs()).fold(0.0, f64::max);
         let largest = self.offsets.iter().map(|d| d.abs()).fold(0.0, f64::max);
         if apart <= CONCURRENT * largest || self.planes < 4 {
@@ -268,7 +283,7 @@ fn nearest_point(scaled: &[Scaled]) -> Vector3<f64> {
     let mut near = Vector3::zeros();
     for _ in 0..2 {
         let offsets: Vec<f64> = scaled.iter().map(|s| s.about(&near)).collect();
-        near -= Vector3::from(singular.least_squares(&offsets, NEAR));
+        near -= Vector3::from_vec(singular.least_squares(&offsets, NEAR));
     }
     near
 }

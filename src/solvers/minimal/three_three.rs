@@ -11,24 +11,22 @@
 //!                noiseless points, and dividing the error of the angle evenly for noisy ones.
 //!             3. Of the (up to four) rotations those are kept that the further points tell from none better: misfit is
 //!                the error of the angle, with (3,3,2) also n3 . R e for the pair's direction e, with (3,3,3) the sine between
-//!                n3 and R m3. All within the factor UNDECIDED of the best are returned.
+//!                n3 and R m3. All that noise cannot tell from the best (undecided.rs) are returned.
 //!             4. The three groups' centroids give t.
 //! Solutions   (3,3,1): 2; (3,3,2), (3,3,3): 1; with planes at right angles the twins of mathematics.md 4.5: 2 or 4
 //! Degenerate  collinear triples, parallel planes, normals in one plane: no pose is returned
 //! Scaling     differences to centroids; all tests are relative
 //! Source      Ramalingam et al. (ECCV 2010), section 3.2; mathematics.md 4.4, 4.5
 //! Cost        0.15 to 0.18 us (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000 1.4e-11 of the scene
-//! Tests       solvers::tests; tests/solver_accuracy.rs; golden/rigid.json
+//! Tests       tests/solver_accuracy.rs; golden/rigid.json
 //! ```
 
-use super::{Poses, RANK_TOLERANCE, Row};
-use crate::geometry::{Matrix3, Rotation3, Similarity, Vector3};
-
-/// Candidates whose misfit is within this factor of the best one's cannot be told apart by noisy points.
-const UNDECIDED: f64 = 3.0;
-
-/// Misfit (a sine) that rounding alone leaves in coordinates a thousand times their spread, with room.
-const MISFIT_OF_ROUNDING: f64 = 1e-10;
+use crate::geometry::{Matrix3, Vector3};
+use crate::solvers::algebra::dual::dual_basis;
+use crate::solvers::algebra::tolerance::RANK_TOLERANCE;
+use crate::solvers::minimal::undecided::undecided;
+use crate::solvers::poses::Poses;
+use crate::solvers::row::{Row, centroid};
 
 /// Rotations by either sign of either normal, with what speaks against each.
 struct Candidates {
@@ -54,12 +52,6 @@ impl Candidates {
         let best = entries.iter().map(|entry| entry.1).fold(f64::INFINITY, f64::min);
         entries.iter().filter(move |entry| undecided(entry.1, best)).map(|entry| &entry.0)
     }
-}
-
-/// Whether noise or rounding may have made a candidate worse than the best.
-#[inline]
-pub(super) fn undecided(misfit: f64, best: f64) -> bool {
-    misfit <= UNDECIDED * best + MISFIT_OF_ROUNDING
 }
 
 /// Rigid poses from rows (3,3,1).
@@ -103,11 +95,8 @@ fn two_triples(rows: &[Row], misfit: impl Fn(&Matrix3<f64>) -> f64) -> Poses {
             }
         }
     }
-    let groups = [&rows[..3], &rows[3..6], &rows[6..]];
     for rotation in candidates.undecided() {
-        if let Some(pose) = pose(rotation, &groups) {
-            poses.push(pose);
-        }
+        push_on_planes(&mut poses, rotation, &[&rows[..3], &rows[3..6], &rows[6..]]);
     }
     poses
 }
@@ -134,19 +123,11 @@ fn bisectors(a: &Vector3<f64>, b: &Vector3<f64>) -> Option<[Vector3<f64>; 3]> {
     Some([plus, minus, plus.cross(&minus)])
 }
 
-/// The translation that puts the centroid of each group onto its plane.
+/// Adds the pose whose translation puts the centroid of each group onto its plane.
 #[inline]
-fn pose(rotation: &Matrix3<f64>, groups: &[&[Row]; 3]) -> Option<Similarity> {
-    let centre = |rows: &[Row]| rows.iter().map(|row| row.point).sum::<Vector3<f64>>() / rows.len() as f64;
-    let pivot = centre(groups[0]);
-    let n = groups.map(|group| group[0].normal);
-    let height = groups.map(|group| -group[0].offset - group[0].normal.dot(&(rotation * (centre(group) - pivot))));
-    let across = n[1].cross(&n[2]);
-    let volume = n[0].dot(&across);
-    if !(volume.abs() > RANK_TOLERANCE) {
-        return None;
-    }
-    let image = (across * height[0] + n[2].cross(&n[0]) * height[1] + n[0].cross(&n[1]) * height[2]) / volume;
-    let translation = image - rotation * pivot;
-    Some(Similarity { scale: 1.0, rotation: Rotation3::from_matrix_unchecked(*rotation), translation })
+fn push_on_planes(poses: &mut Poses, rotation: &Matrix3<f64>, groups: &[&[Row]; 3]) {
+    let Some(dual) = dual_basis(&groups.map(|group| group[0].normal)) else { return };
+    let pivot = centroid(groups[0]);
+    let [a, b, c] = groups.map(|group| -group[0].offset - group[0].normal.dot(&(rotation * (centroid(group) - pivot))));
+    poses.push_about(&pivot, &(dual[0] * a + dual[1] * b + dual[2] * c), 1.0, *rotation);
 }

@@ -8,8 +8,9 @@
 //! Source      Golub and Van Loan, Matrix Computations, 5.2
 //! ```
 
-use super::Row;
 use crate::geometry::{Matrix3, Vector3};
+use crate::solvers::elimination::triangular;
+use crate::solvers::row::Row;
 
 /// Nine of s R, three of t, and the constant.
 const COEFFICIENTS: usize = 13;
@@ -20,14 +21,14 @@ const ROWS_AT_ONCE: usize = 64;
 
 /// `<turning, s R> + normal . t + offset`
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Form {
+pub struct Form {
     pub turning: Matrix3<f64>,
     pub normal: Vector3<f64>,
     pub offset: f64,
 }
 
 impl Form {
-    pub(super) fn of(row: &Row) -> Form {
+    pub fn of(row: &Row) -> Form {
         Form { turning: row.normal * row.point.transpose(), normal: row.normal, offset: row.offset }
     }
 
@@ -43,7 +44,7 @@ impl Form {
 }
 
 /// The rows as forms; more than thirteen become thirteen.
-pub(super) fn forms_of(rows: &[Row]) -> Vec<Form> {
+pub fn forms_of(rows: &[Row]) -> Vec<Form> {
     if rows.len() <= COEFFICIENTS {
         return rows.iter().map(Form::of).collect();
     }
@@ -52,7 +53,7 @@ pub(super) fn forms_of(rows: &[Row]) -> Vec<Form> {
 }
 
 /// At most C rows, with the same sum of squares for every vector that all rows are multiplied by.
-pub(super) fn reduced<const C: usize>(rows: impl Iterator<Item = [f64; C]>) -> Vec<[f64; C]> {
+pub fn reduced<const C: usize>(rows: impl Iterator<Item = [f64; C]>) -> Vec<[f64; C]> {
     let mut kept = Vec::with_capacity(ROWS_AT_ONCE);
     for row in rows {
         if kept.len() == ROWS_AT_ONCE {
@@ -66,26 +67,6 @@ pub(super) fn reduced<const C: usize>(rows: impl Iterator<Item = [f64; C]>) -> V
         kept.truncate(C);
     }
     kept
-}
-
-/// Householder's triangular form of the first `columns` columns, for any number of rows.
-pub(super) fn triangular<const C: usize>(rows: &mut [[f64; C]], columns: usize) {
-    for k in 0..columns.min(rows.len()) {
-        let square: f64 = rows[k..].iter().map(|row| row[k] * row[k]).sum();
-        if square == 0.0 {
-            continue;
-        }
-        let diagonal = if rows[k][k] > 0.0 { -square.sqrt() } else { square.sqrt() };
-        let weight = (square - diagonal * rows[k][k]).recip();
-        let mut v: Vec<f64> = rows[k..].iter().map(|row| row[k]).collect();
-        v[0] -= diagonal;
-        for j in 0..C {
-            let along: f64 = rows[k..].iter().zip(&v).map(|(row, v)| row[j] * v).sum();
-            for (row, v) in rows[k..].iter_mut().zip(&v) {
-                row[j] -= weight * along * v;
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `a cos + b sin + g = 0`: a line meets the unit circle (mathematics.md 4.1).
 
-use super::RANK_TOLERANCE;
+use super::tolerance::RANK_TOLERANCE;
 
 /// By how much, relative to the radius, the line may pass beside the circle and still count as tangent. Rounding in
 /// the coefficients is some 1e-15; a tangent is hit to the square root of it.
@@ -13,7 +13,7 @@ const TANGENT: f64 = 1e-13;
 /// a tangent. `size_sq` is the square of the size that `a` and `b` have in general: where both vanish beside it, every
 /// angle fits or none, and nothing is returned.
 #[inline]
-pub(super) fn on_circle(a: f64, b: f64, g: f64, size_sq: f64) -> ([[f64; 2]; 2], usize) {
+pub fn on_circle(a: f64, b: f64, g: f64, size_sq: f64) -> ([[f64; 2]; 2], usize) {
     let square = a * a + b * b;
     let r = square.sqrt();
     let inside = (r - g) * (r + g);

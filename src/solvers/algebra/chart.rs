@@ -5,7 +5,7 @@
 
 use crate::geometry::Vector3;
 
-use super::dual::{dual_basis, volume};
+use super::dual::dual_basis;
 use super::quaternion::{MONOMIALS, PLACE, Quadric, Quaternion, product, value};
 use super::resultant::Resultant;
 
@@ -48,7 +48,8 @@ impl Chart {
         let mut best = Chart { turning, order: ORDERS[0], determinant: 0.0, quadrics };
         for order in ORDERS {
             let columns = [PLACE[order[0]][order[0]], PLACE[order[1]][order[1]], PLACE[order[0]][order[1]]];
-            let determinant = volume(&columns.map(|j| Vector3::new(quadrics[0][j], quadrics[1][j], quadrics[2][j])));
+            let [a, b, c] = columns.map(|j| Vector3::new(quadrics[0][j], quadrics[1][j], quadrics[2][j]));
+            let determinant = a.cross(&b).dot(&c);
             if determinant.abs() > best.determinant.abs() {
                 best = Chart { order, determinant, ..best };
             }
@@ -56,10 +57,15 @@ impl Chart {
         best
     }
 
-    /// The equations in Y, Z, 1 whose determinant is the octic; `None` where that would be rounding noise.
-    pub fn resultant(&self) -> Option<Resultant> {
-        let solved = self.solved().filter(|_| self.determinant.abs() > NO_CHART)?;
-        Some(Resultant::new(&solved))
+    /// Whether the chart's octic is more than rounding noise.
+    pub fn tells(&self) -> bool {
+        self.determinant.abs() > NO_CHART
+    }
+
+    /// The equations in Y, Z, 1 whose determinant is the octic.
+    #[inline]
+    pub fn resultant(&self) -> Resultant {
+        Resultant::new(&self.solved())
     }
 
     /// The quaternion at a root of the octic.
@@ -75,15 +81,15 @@ impl Chart {
     }
 
     /// The coefficients of Y^2, Z^2 and YZ (rows a, b, c) as functions of the others: Y X, Y W, Z X, Z W, W^2, X W, X^2.
-    fn solved(&self) -> Option<[[f64; 7]; 3]> {
+    fn solved(&self) -> [[f64; 7]; 3] {
         let [y, z, x, w] = self.order;
         let column = |i: usize, j: usize| {
             let place = PLACE[i][j];
             Vector3::new(self.quadrics[0][place], self.quadrics[1][place], self.quadrics[2][place])
         };
-        let inverse = dual_basis(&[column(y, y), column(z, z), column(y, z)])?;
+        let inverse = dual_basis(&[column(y, y), column(z, z), column(y, z)], -self.determinant);
         let right = [column(y, x), column(y, w), column(z, x), column(z, w), column(w, w), column(x, w), column(x, x)];
-        Some(inverse.map(|row| right.map(|r| -row.dot(&r))))
+        inverse.map(|row| right.map(|r| row.dot(&r)))
     }
 }
 

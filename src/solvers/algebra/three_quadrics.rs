@@ -77,10 +77,12 @@ fn in_all_charts(quadrics: &[Quadric; 3]) -> CommonPoints {
 
 /// Adds what a chart sees.
 fn add_points(found: &mut CommonPoints, quadrics: &[Quadric; 3], chart: &Chart) {
-    match chart.resultant() {
-        Some(resultant) => found.add(&InChart { quadrics, chart, resultant: &resultant }, &resultant.octic()),
-        None => found.doubt(),
+    if !chart.tells() {
+        found.doubt();
+        return;
     }
+    let resultant = chart.resultant();
+    found.add(&InChart { quadrics, chart, resultant: &resultant }, &resultant.octic());
 }
 
 /// Three quadrics, seen in a chart.

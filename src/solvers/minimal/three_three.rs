@@ -22,7 +22,7 @@
 //! ```
 
 use crate::geometry::{Matrix3, Vector3};
-use crate::solvers::algebra::dual::dual_basis;
+use crate::solvers::algebra::dual::{dual_basis, volume};
 use crate::solvers::algebra::tolerance::RANK_TOLERANCE;
 use crate::solvers::minimal::undecided::undecided;
 use crate::solvers::poses::Poses;
@@ -126,7 +126,13 @@ fn bisectors(a: &Vector3<f64>, b: &Vector3<f64>) -> Option<[Vector3<f64>; 3]> {
 /// Adds the pose whose translation puts the centroid of each group onto its plane.
 #[inline]
 fn push_on_planes(poses: &mut Poses, rotation: &Matrix3<f64>, groups: &[&[Row]; 3]) {
-    let Some(dual) = dual_basis(&groups.map(|group| group[0].normal)) else { return };
+    let normals = groups.map(|group| group[0].normal);
+    let volume = volume(&normals);
+    // Also false for NaN.
+    if !(volume.abs() > RANK_TOLERANCE) {
+        return;
+    }
+    let dual = dual_basis(&normals, volume);
     let pivot = centroid(groups[0]);
     let [a, b, c] = groups.map(|group| -group[0].offset - group[0].normal.dot(&(rotation * (centroid(group) - pivot))));
     poses.push_about(&pivot, &(dual[0] * a + dual[1] * b + dual[2] * c), 1.0, *rotation);

@@ -68,6 +68,7 @@ fn same(a: &Turn, b: &Turn) -> bool {
 }
 
 /// The turns that come nearest to two equations at once, with the misfit that they leave (a sine).
+#[inline]
 fn turns_between(pairs: &[Columns; 2], sense: Sense, size_sq: f64) -> [Option<(Turn, f64)>; 2] {
     let lines = pairs.map(|row| line(&row[3..], 0.0, sense));
     let depth = lines.map(|[a, b, g]| a * a + b * b - g * g);
@@ -79,6 +80,7 @@ fn turns_between(pairs: &[Columns; 2], sense: Sense, size_sq: f64) -> [Option<(T
 }
 
 /// From a turn to the one with the least sum of squares, and its misfit.
+#[inline]
 fn between(lines: &[Line; 2], start: Turn, size_sq: f64) -> (Turn, f64) {
     let (mut cos, mut sin) = (start.cos, start.sin);
     for _ in 0..STEPS {

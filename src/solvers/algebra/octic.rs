@@ -182,6 +182,9 @@ fn value_and_slope(c: &[f64; 9], t: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::{Complex, SMatrix};
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
 
     /// Coefficients of the product of (w_i x - x_i w) over the given roots, times (x^2 + k^2 w^2) up to degree 8.
     fn with_roots(roots: &[[f64; 2]], k: f64) -> [f64; 9] {
@@ -271,5 +274,38 @@ mod tests {
     fn noise_and_nan_end_without_roots_beyond_the_limit() {
         assert!(real_roots(&[f64::NAN; 9]).is_empty());
         assert!(real_roots(&[0.0; 9]).len() <= MOST_ROOTS);
+    }
+
+    /// Roots of `c[0] + c[1] t + .. + c[8] t^8` over the complex numbers: eigenvalues of the companion matrix.
+    fn by_companion_matrix(c: &[f64; 9]) -> Vec<Complex<f64>> {
+        let companion = SMatrix::<f64, 8, 8>::from_fn(|i, j| match (i, j) {
+            (i, 7) => -c[i] / c[8],
+            (i, j) if i == j + 1 => 1.0,
+            _ => 0.0,
+        });
+        companion.complex_eigenvalues().iter().copied().collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+        #[test]
+        fn the_real_roots_are_the_real_eigenvalues_of_the_companion_matrix(c in prop::array::uniform9(-1.0..1.0f64)) {
+            prop_assume!(c[8].abs() > 0.05);
+            let all = by_companion_matrix(&c);
+            // A root that is nearly double is real or complex as rounding will have it.
+            let clear = |k: usize| {
+                let apart = (0..8).filter(|&i| i != k).all(|i| (all[i] - all[k]).norm() > 1e-3 * (1.0 + all[k].norm()));
+                apart && (all[k].im.abs() < 1e-9 || all[k].im.abs() > 1e-4)
+            };
+            prop_assume!((0..8).all(clear));
+            let real: Vec<f64> = all.iter().filter(|root| root.im.abs() < 1e-9).map(|root| root.re).collect();
+            let found = real_roots(&c);
+            prop_assert_eq!(found.len(), real.len());
+            for root in real {
+                let miss = found.iter().map(|&[x, w]| (x - root * w).abs() / root.hypot(1.0)).fold(f64::INFINITY, f64::min);
+                prop_assert!(miss < 1e-6, "{} is missed by {}", root, miss);
+            }
+        }
     }
 }

@@ -157,3 +157,46 @@ fn cross_entry(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> [f64; 
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+    use std::f64::consts::{PI, TAU};
+
+    /// Sign changes of the condition h_1^2 + h_2^2 = h_3^2 around the circle of alpha, sampled finely: a lower bound of the number
+    /// of solutions, each of which changes the sign once.
+    fn solutions_seen_by_sampling([first, second]: &[Bilinear; 2]) -> usize {
+        let condition = |alpha: f64| {
+            let (sin, cos) = alpha.sin_cos();
+            let line = |g: &Bilinear| Vector3::from_fn(|j, _| cos * g[j] + sin * g[3 + j] + g[6 + j]);
+            let h = line(first).cross(&line(second));
+            h.x * h.x + h.y * h.y - h.z * h.z
+        };
+        let signs: Vec<bool> = (0..4000).map(|i| condition(TAU * f64::from(i) / 4000.0) > 0.0).collect();
+        (0..4000).filter(|&i| signs[i] != signs[(i + 1) % 4000]).count()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(3), failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+        #[test]
+        fn planted_angles_are_found_and_no_solution_is_missing(
+            random in prop::array::uniform2(prop::array::uniform9(-1.0..1.0f64)),
+            (alpha, beta) in (-PI..PI, -PI..PI),
+        ) {
+            let planted = [alpha.cos(), alpha.sin(), beta.cos(), beta.sin()];
+            let equations = random.map(|mut g| {
+                g[8] -= bilinear(&g, &planted);
+                g
+            });
+            // Where two solutions nearly share an angle the octic may hand the sample on.
+            let Some(found) = two_circles(&equations[0], &equations[1]) else { return Ok(()) };
+            prop_assert!(found.iter().all(|at| equations.iter().all(|g| bilinear(g, at).abs() < 1e-9)));
+            prop_assert!(found.len() >= solutions_seen_by_sampling(&equations));
+            let miss_sq = found.iter().map(|at| TwoCircles::distance_sq(at, &planted)).fold(f64::INFINITY, f64::min);
+            prop_assert!(miss_sq < 1e-12, "missed by {}", miss_sq.sqrt());
+        }
+    }
+}

@@ -64,19 +64,22 @@ fn middle(a: &Row, b: &Row) -> Row {
 }
 
 fn same(a: &Turn, b: &Turn) -> bool {
-    (a.cos - b.cos).hypot(a.sin - b.sin) < SAME_ANGLE
+    (a.cos - b.cos).abs() + (a.sin - b.sin).abs() < SAME_ANGLE
 }
 
 /// The turns that come nearest to two equations at once, with the misfit that they leave (a sine).
-#[inline]
 fn turns_between(pairs: &[Columns; 2], sense: Sense, size_sq: f64) -> [Option<(Turn, f64)>; 2] {
     let lines = pairs.map(|row| line(&row[3..], 0.0, sense));
     let depth = lines.map(|[a, b, g]| a * a + b * b - g * g);
     let [a, b, g] = lines[usize::from(depth[1] > depth[0])];
     let radius = a.hypot(b);
     // Noise may lift the line off the circle: the nearest point is a good start.
-    let mut starts = Turn::on([a, b, g.clamp(-radius, radius)], sense, size_sq);
-    std::array::from_fn(|_| starts.next().map(|start| between(&lines, start, size_sq)))
+    let starts = Turn::on([a, b, g.clamp(-radius, radius)], sense, size_sq);
+    let mut found = [None; 2];
+    for (slot, start) in found.iter_mut().zip(starts) {
+        *slot = Some(between(&lines, start, size_sq));
+    }
+    found
 }
 
 /// From a turn to the one with the least sum of squares, and its misfit.
@@ -92,7 +95,7 @@ fn between(lines: &[Line; 2], start: Turn, size_sq: f64) -> (Turn, f64) {
         }
         let step = if slope_sq > 0.0 { -product / slope_sq } else { 0.0 };
         (cos, sin) = (cos - sin * step, sin + cos * step);
-        let norm = cos.hypot(sin);
+        let norm = (cos * cos + sin * sin).sqrt();
         (cos, sin) = (cos / norm, sin / norm);
     }
     let misfit_sq: f64 = lines.iter().map(|[a, b, g]| (a * cos + b * sin + g) * (a * cos + b * sin + g)).sum();

@@ -17,7 +17,8 @@ use crate::solvers::turn::{KnownAxis, Line, Sense, Turn, line};
 /// A line whose radius is smaller than this beside the others says nothing of the angle.
 const NO_LINE: f64 = 1e-11;
 
-/// By how much, relative to the radius, a tangent may pass beside the circle: with more rows than unknowns it may by more than rounding.
+/// By how much, relative to the radius, a tangent may pass beside the circle: with more rows than unknowns it may by more than
+/// rounding.
 const NEARLY_TANGENT: f64 = 1e-7;
 
 /// Rotations to start from; every solution is near one of them.

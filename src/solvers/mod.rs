@@ -5,6 +5,17 @@
 //! the pose has unknowns; all its real poses with det R = +1 and s > 0 are returned, in a list without heap. An empty list
 //! means that there is none, or that the sample is degenerate.
 //!
+//! All solvers follow one idea:
+//!
+//! 1. A pair of point and plane is a row, `n . (s R p + t) + d = 0` (`row`).
+//! 2. Translation and scale are linear in it. They are eliminated, and equations of the rotation remain (`elimination`).
+//! 3. Where the sample tells an axis of the rotation, an equation is a line that meets the unit circle (`turn`). Where it tells less,
+//!    the equations are quadratic, and an octic has their solutions (`algebra`).
+//! 4. Newton's method makes each solution exact; more rows than unknowns are polished by Gauss and Newton (`thorough`).
+//! 5. Substitution gives scale and translation.
+//!
+//! `minimal` holds the solvers, one file for each kind of sample; `thorough` takes any rows and tells why a pose is not determined.
+//!
 //! Names tell the sample: first what is sought (`se3` rotation and translation, `sim3` a scale besides, `upright_` with
 //! known vertical), then the points on each plane where these matter (`321` for (3,2,1); `pair_4pt`: two points on one
 //! plane and four anywhere), else their number (`6pt`).

@@ -76,11 +76,18 @@ impl KnownAxis {
     }
 }
 
-/// The line that parts are for one sense of the axis, `constant` beside them.
+/// The line that parts are for one sense of the axis.
 #[inline]
-pub fn line(parts: &[f64], constant: f64, sense: Sense) -> Line {
+pub fn line(parts: &[f64], sense: Sense) -> Line {
     let sigma = sense.sigma();
-    [parts[0] + sigma * parts[1], parts[2] - sigma * parts[3], sigma * parts[4] + constant]
+    [parts[0] + sigma * parts[1], parts[2] - sigma * parts[3], sigma * parts[4]]
+}
+
+/// The same with a constant beside them.
+#[inline]
+pub fn line_with(parts: &[f64], constant: f64, sense: Sense) -> Line {
+    let [a, b, g] = line(parts, sense);
+    [a, b, g + constant]
 }
 
 impl Turn {
@@ -94,7 +101,7 @@ impl Turn {
     /// `normal . R p` from its parts.
     #[inline]
     pub fn along(&self, parts: &[f64]) -> f64 {
-        let [a, b, g] = line(parts, 0.0, self.sense);
+        let [a, b, g] = line(parts, self.sense);
         self.cos * a + self.sin * b + g
     }
 }

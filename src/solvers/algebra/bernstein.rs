@@ -13,11 +13,13 @@ pub struct Interval {
 
 impl Interval {
     /// [-1, 1], for the polynomial with coefficients `c[i]` of `t^i`.
+    #[inline]
     pub fn whole(c: &[f64; 9]) -> Interval {
         Interval { bernstein: bernstein(c), at: -1.0, width: 2.0 }
     }
 
     /// Seen from its other end.
+    #[inline]
     pub fn mirrored(mut self) -> Interval {
         self.bernstein.reverse();
         self

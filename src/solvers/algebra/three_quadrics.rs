@@ -56,15 +56,22 @@ fn in_charts_as_needed(quadrics: &[Quadric; 3]) -> CommonPoints {
             return found;
         }
     }
+    add_best_charts(&mut found, quadrics, straight);
+    found
+}
+
+/// Adds what the straight chart and the turned ones see, the best first, until no solution is missing.
+#[cold]
+#[inline(never)]
+fn add_best_charts(found: &mut CommonPoints, quadrics: &[Quadric; 3], straight: Chart) {
     let mut charts = [straight, Chart::best(quadrics, Some(0)), Chart::best(quadrics, Some(1))];
     charts.sort_by(|a, b| b.determinant.abs().total_cmp(&a.determinant.abs()));
     for chart in &charts {
-        add_points(&mut found, quadrics, chart);
+        add_points(found, quadrics, chart);
         if found.is_complete() {
             break;
         }
     }
-    found
 }
 
 fn in_all_charts(quadrics: &[Quadric; 3]) -> CommonPoints {

@@ -34,23 +34,19 @@ type Columns = [f64; 14];
 
 /// Rigid poses from six points on planes.
 pub fn se3_6pt(rows: &[Row; 6]) -> Poses {
-    rigid(rows, Charts::AsNeeded)
+    from_quadrics(rows, Scale::Given, Charts::AsNeeded)
 }
 
 /// Similarities from seven points on planes.
 pub fn sim3_7pt(rows: &[Row; 7]) -> Poses {
-    similarities(rows, Charts::AsNeeded)
+    from_quadrics(rows, Scale::Sought, Charts::AsNeeded)
 }
 
-/// All charts are for rows on which another solver has found that solutions share a root.
-#[inline]
-pub fn rigid(rows: &[Row; 6], charts: Charts) -> Poses {
-    from_quadrics(rows, Scale::Given, charts)
-}
-
-#[inline]
-pub fn similarities(rows: &[Row; 7], charts: Charts) -> Poses {
-    from_quadrics(rows, Scale::Sought, charts)
+/// The same with all charts asked: for rows on which another solver has found that solutions share a root.
+#[cold]
+#[inline(never)]
+pub fn in_all_charts<const M: usize>(rows: &[Row; M], scale: Scale) -> Poses {
+    from_quadrics(rows, scale, Charts::All)
 }
 
 #[inline(always)]

@@ -27,10 +27,9 @@
 
 use crate::geometry::{Axes, Matrix3, Vector3};
 use crate::solvers::algebra::common_points::Point;
-use crate::solvers::algebra::three_quadrics::Charts;
 use crate::solvers::algebra::two_circles::{Bilinear, bilinear, two_circles};
 use crate::solvers::elimination::{Eliminated, Scale};
-use crate::solvers::minimal::any::{rigid, similarities};
+use crate::solvers::minimal::any::in_all_charts;
 use crate::solvers::poses::Poses;
 use crate::solvers::row::Row;
 
@@ -39,12 +38,12 @@ type Columns = [f64; 12];
 
 /// Rigid poses from six rows, the first two on one plane.
 pub fn se3_pair_4pt(rows: &[Row; 6]) -> Poses {
-    from_two_angles::<4>(rows, Scale::Given).unwrap_or_else(|| rigid(rows, Charts::All))
+    from_two_angles::<4>(rows, Scale::Given).unwrap_or_else(|| in_all_charts(rows, Scale::Given))
 }
 
 /// Similarities from seven rows, the first two on one plane.
 pub fn sim3_pair_5pt(rows: &[Row; 7]) -> Poses {
-    from_two_angles::<5>(rows, Scale::Sought).unwrap_or_else(|| similarities(rows, Charts::All))
+    from_two_angles::<5>(rows, Scale::Sought).unwrap_or_else(|| in_all_charts(rows, Scale::Sought))
 }
 
 /// `None` where the octic is blind.

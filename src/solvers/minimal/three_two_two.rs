@@ -69,7 +69,7 @@ fn same(a: &Turn, b: &Turn) -> bool {
 
 /// The turns that come nearest to two equations at once, with the misfit that they leave (a sine).
 fn turns_between(pairs: &[Columns; 2], sense: Sense, size_sq: f64) -> [Option<(Turn, f64)>; 2] {
-    let lines = pairs.map(|row| line(&row[3..], 0.0, sense));
+    let lines = pairs.map(|row| line(&row[3..], sense));
     let depth = lines.map(|[a, b, g]| a * a + b * b - g * g);
     let [a, b, g] = lines[usize::from(depth[1] > depth[0])];
     let radius = a.hypot(b);

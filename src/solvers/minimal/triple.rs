@@ -11,7 +11,7 @@ use crate::solvers::algebra::tolerance::RANK_TOLERANCE;
 use crate::solvers::elimination::Eliminated;
 use crate::solvers::poses::Poses;
 use crate::solvers::row::Row;
-use crate::solvers::turn::{KnownAxis, Sense, Turn, line};
+use crate::solvers::turn::{KnownAxis, Sense, Turn, line_with};
 
 /// Columns of a row: the unknowns w and u, the offset delta, then the parts of v . R y.
 pub type Columns = [f64; 8];
@@ -81,7 +81,7 @@ impl Triple {
     pub fn poses<const M: usize>(&self, rows: &Eliminated<2, M, 8>, equation: &Columns, size_sq: f64) -> Poses {
         let mut poses = Poses::none();
         for sense in Sense::BOTH {
-            for turn in Turn::on(line(&equation[3..], equation[2], sense), sense, size_sq) {
+            for turn in Turn::on(line_with(&equation[3..], equation[2], sense), sense, size_sq) {
                 self.push(&mut poses, rows, &turn);
             }
         }

@@ -50,11 +50,12 @@ pub fn upright_se3_4pt(rows: &[Row; 4], up: &Up) -> Poses {
     }
     let equation = m[0] * z[0] + m[1] * z[1] + m[2] * z[2] + m[3] * z[3];
     let basis = OTHERS[largest(&z)];
-    let normals = basis.map(|i| v[i]);
+    let [i, j, k] = basis;
+    let normals = [v[i], v[j], v[k]];
     let dual = dual_basis(&normals, volume(&normals));
     for turn in Turn::on(equation.into(), Sense::Along, spread_sq(rows) * size_sq) {
         let at = Vector3::new(turn.cos, turn.sin, 1.0);
-        let [x, y, z] = basis.map(|i| -m[i].dot(&at));
+        let [x, y, z] = [-m[i].dot(&at), -m[j].dot(&at), -m[k].dot(&at)];
         push(&mut poses, up, &pivot, &turn, 1.0, dual[0] * x + dual[1] * y + dual[2] * z);
     }
     poses
@@ -99,7 +100,7 @@ fn coefficients(row: &Row, up: &Up, pivot: &Vector3<f64>) -> (Vector3<f64>, Line
     let axis = up.axis();
     let v = axis.object.coordinates(&row.normal);
     let parts = axis.parts(&v, &axis.sensor.coordinates(&(row.point - pivot)));
-    (v.into(), line(&parts, 0.0, Sense::Along))
+    (v.into(), line(&parts, Sense::Along))
 }
 
 /// Adds the pose that sends the pivot to `image`, given in the object's axes.

@@ -12,12 +12,13 @@ use crate::solvers::algebra::quaternion::{Quadric, form_of, rotation};
 use crate::solvers::algebra::three_quadrics::{Charts, three_quadrics};
 use crate::solvers::elimination::triangular;
 use crate::solvers::sought::Sought;
-use crate::solvers::turn::{KnownAxis, Line, Sense, Turn, line};
+use crate::solvers::turn::{KnownAxis, Line, Sense, Turn, line_with};
 
 /// A line whose radius is smaller than this beside the others says nothing of the angle.
 const NO_LINE: f64 = 1e-11;
 
-/// By how much, relative to the radius, a tangent may pass beside the circle: with more rows than unknowns it may by more than rounding.
+/// By how much, relative to the radius, a tangent may pass beside the circle: with more rows than unknowns it may by more than
+/// rounding.
 const NEARLY_TANGENT: f64 = 1e-7;
 
 /// Rotations to start from; every solution is near one of them.
@@ -54,8 +55,9 @@ fn about_axis(problem: &Normalised, axis: &KnownAxis, senses: &[Sense]) -> Optio
     }
     let unknowns = linear_unknowns(&problem.sought);
     triangular(&mut rows, unknowns);
-    let lines =
-        rows[unknowns..].iter().flat_map(|row| senses.iter().map(|&sense| (line(&row[5..], row[4], sense), sense)));
+    let lines = rows[unknowns..]
+        .iter()
+        .flat_map(|row| senses.iter().map(|&sense| (line_with(&row[5..], row[4], sense), sense)));
     let telling: Vec<_> = lines.filter(|(line, _)| says_something(line)).collect();
     let turns = telling.iter().flat_map(|&(line, sense)| Turn::on(pulled_to_circle(line), sense, 0.0));
     (!telling.is_empty()).then(|| turns.map(|turn| axis.rotation(&turn)).collect())

@@ -17,8 +17,8 @@
 //! Tests       golden/degenerate.json; tests/solver_problems.rs
 //! ```
 
-use super::jacobian::{jacobian_of, singular_of};
-use crate::geometry::{Matrix3, Vector3};
+use super::jacobian::singular_of;
+use crate::geometry::{Matrix3, Vector3, distance_derivative};
 use crate::solvers::row::Row;
 use crate::solvers::sought::Sought;
 
@@ -57,7 +57,7 @@ pub enum Degeneracy {
 
 /// Smallest over largest singular value of the Jacobian (14) for images `y` in units of their spread about their centroid.
 pub fn condition(sought: &Sought, images: &[Vector3<f64>], normals: &[Vector3<f64>]) -> f64 {
-    let singular = singular_of(sought, images.iter().zip(normals).map(|(y, n)| jacobian_of(y, n)));
+    let singular = singular_of(sought, images.iter().zip(normals).map(|(y, n)| distance_derivative(y, n)));
     if images.len() < sought.unknowns() || !(singular.largest() > 0.0) {
         return 0.0;
     }

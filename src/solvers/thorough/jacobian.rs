@@ -5,7 +5,7 @@
 //! one: (y x n) . u.
 
 use super::forms::reduced;
-use crate::geometry::{Matrix3, Vector3, distance_derivative};
+use crate::geometry::{Matrix3, Vector3};
 use crate::solvers::algebra::singular::Singular;
 use crate::solvers::sought::Sought;
 
@@ -16,12 +16,7 @@ pub type Derivative = [f64; 7];
 /// it, those of many would take long.
 const MANY_ROWS: usize = 64;
 
-/// The row of an image `y` on a plane.
-pub fn jacobian_of(y: &Vector3<f64>, normal: &Vector3<f64>) -> Derivative {
-    distance_derivative(y, normal)
-}
-
-/// The same for a sum of products `m = y n^T`: y x n stands beside its diagonal and n . y along it.
+/// `geometry::distance_derivative` for a sum of products `m = y n^T`: y x n stands beside its diagonal and n . y along it.
 pub fn jacobian_of_sum(m: &Matrix3<f64>, normal: &Vector3<f64>) -> Derivative {
     let n = normal;
     [m[(1, 2)] - m[(2, 1)], m[(2, 0)] - m[(0, 2)], m[(0, 1)] - m[(1, 0)], n.x, n.y, n.z, m.trace()]

@@ -40,8 +40,8 @@ const EXACT: f64 = 1e-11;
 /// The same for more rows than unknowns, which are consistent only as far as their coordinates have digits.
 const CONSISTENT: f64 = 1e-8;
 
-/// What a far image adds to the first of these, as a share of its distance: nearly parallel planes put poses a million spreads away, where the
-/// terms of a row cancel only to some 1e-15 of their size.
+/// What a far image adds to `EXACT`, as a share of its distance: nearly parallel planes put poses a million spreads away, where
+/// the terms of a row cancel only to some 1e-15 of their size.
 const FAR_ROUNDING: f64 = 1e-14;
 
 /// Rotations (Frobenius norm) and scales (relative) closer than this are one solution.

@@ -23,8 +23,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let alignment = align(&city, &sfm, Some(&superpixels), &AlignOptions::new(start), &())?;
     println!("{}: {}", alignment.verdict.word(), alignment.reason);
 
-    // The similarity maps the reconstruction to absolute city coordinates.
-    if let (Some(city_from_sfm), Some(point)) = (&alignment.best_candidate, sfm.points.first()) {
+    // The similarity maps the reconstruction to absolute city coordinates; there is none unless the verdict is `aligned`.
+    if let (Some(city_from_sfm), Some(point)) = (alignment.transform(), sfm.points.first()) {
         println!(
             "scale {:.4} m per unit; the first point stands at {:.3}",
             city_from_sfm.scale,

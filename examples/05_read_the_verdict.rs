@@ -26,22 +26,25 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn tell(alignment: &Alignment) {
     println!("  {}: {}", alignment.verdict.word(), alignment.reason);
-    match (alignment.verdict, &alignment.best_candidate) {
-        // Only this one is to be built upon; its sigmas say how far.
-        (Verdict::Aligned, Some(pose)) => println!("  use it: scale {:.4}", pose.scale),
+    // Only this one is to be built upon; its sigmas say how far.
+    if let Some(pose) = alignment.transform() {
+        println!("  use it: scale {:.4}", pose.scale);
+    }
+    match alignment.verdict {
+        Verdict::Aligned => {}
         // Sound but for some freedoms: good where those do not matter, or where something else fixes them.
-        (Verdict::Undetermined, Some(_)) => {
+        Verdict::Undetermined => {
             for freedom in alignment.freedoms.iter().filter(|freedom| !freedom.determined) {
                 println!("  open: {}, sigma {:.2} {}", freedom.name, freedom.sigma, freedom.unit.symbol());
             }
         }
         // One of these is right; a better start or a person decides.
-        (Verdict::Ambiguous, Some(_)) => {
+        Verdict::Ambiguous => {
             for other in &alignment.alternatives {
                 println!("  or: {} (weight {:.2})", other.differs, other.weight);
             }
         }
-        _ => println!("  nothing to use: look at the start and at the model"),
+        Verdict::Failed => println!("  nothing to use: look at the start and at the model"),
     }
 }
 

@@ -18,11 +18,11 @@
 //!                problem that has no others is refused.
 //! Solutions   as the table of `solvers` says; the twins of right-angled corners are all returned
 //! Degenerate  refused with the reason (`Degeneracy`); nothing that leaves here is NaN
-//! Scaling     units from 1e-12 to 1e12, coordinates to 1e7 times the spread (golden/hard.json)
+//! Scaling     units from 1e-12 to 1e12, coordinates to 2e5 times the spread (docs/golden.md, hard.json)
 //! Source      mathematics.md sections 2, 10, 11, 12
 //! Cost        about a millisecond, and a few microseconds for each further row: it is made for single problems, not for loops;
 //!             it allocates
-//! Tests       tests/solver_problems.rs; tools/score_solve.py over golden/*.json
+//! Tests       tests/solver_problems.rs, over the golden problems (docs/golden.md)
 //! ```
 
 use super::candidates::candidates;

@@ -23,6 +23,7 @@ use crate::geometry::{Point3, Rotation3, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::PatchLimits;
 use crate::reconstruction::{PointIndex, Reconstruction};
+use crate::robust::median;
 
 /// Points of one plane, seen from one side.
 #[derive(Clone, Debug)]
@@ -89,7 +90,8 @@ pub fn patches(r: &Reconstruction, superpixels: Option<&LiftedSuperpixels>, limi
     let points: Vec<Point3<f64>> = support.iter().map(|p| r.points[p.0 as usize]).collect();
     let slots = places.slots(&support);
     let (surfaces, neighbours) = local_surfaces(&points);
-    let noise = median(surfaces.iter().flatten().filter(|s| s.roughness < limits.seed_roughness).map(|s| s.rms));
+    let smooth = surfaces.iter().flatten().filter(|s| s.roughness < limits.seed_roughness);
+    let noise = median(&mut smooth.map(|s| s.rms).collect::<Vec<f64>>()).unwrap_or(0.0);
     let repeated = r.points.len() - places.firsts.len();
     let mut found = Patches { support, points, noise, repeated, ..Patches::default() };
     let mut grower = Grower::new(&found.points, surfaces, neighbours, noise, limits);
@@ -365,12 +367,6 @@ impl RegionPlane {
         let fit = fit_plane(members.iter().map(|&i| points[i as usize]))?;
         Some(RegionPlane { center: fit.center.coords, normal: fit.plane.normal })
     }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Matrix3;
 
 use super::draws::between;
-use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
+use crate::geometry::{Point3, Similarity, Vector3, nearest_rotation};
 use crate::solvers::scene::Chance;
 
 /// A slow wave.
@@ -94,12 +94,8 @@ pub(super) fn best_similarity(pairs: &[(Point3<f64>, Point3<f64>)]) -> Similarit
     let (from_middle, to_middle) = (middle_of(&from), middle_of(&to));
     let cross: Matrix3<f64> = pairs.iter().map(|(a, b)| (b - to_middle) * (a - from_middle).transpose()).sum();
     let spread: f64 = from.iter().map(|a| (a - from_middle).norm_squared()).sum();
-    let svd = cross.svd(true, true);
-    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else { return Similarity::identity() };
-    let mut signs = Vector3::repeat(1.0);
-    signs.z = (u.determinant() * v_t.determinant()).signum();
-    let rotation = Rotation3::from_matrix_unchecked(u * Matrix3::from_diagonal(&signs) * v_t);
-    let scale = svd.singular_values.dot(&signs) / spread.max(f64::MIN_POSITIVE);
+    let Some(rotation) = nearest_rotation(&cross) else { return Similarity::identity() };
+    let scale = (rotation.matrix().transpose() * cross).trace() / spread.max(f64::MIN_POSITIVE);
     Similarity::about(&from_middle, &to_middle, scale, rotation)
 }
 

@@ -213,11 +213,8 @@ mod tests {
 
     #[test]
     fn finds_every_root_of_octics_with_known_roots() {
-        let mut state = 7u64;
-        let mut uniform = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut chance = crate::solvers::scene::Chance::new(7);
+        let mut uniform = || chance.uniform();
         for case in 0..20_000 {
             let number = [0, 2, 4, 6, 8][case % 5];
             let known: Vec<[f64; 2]> =

@@ -1,4 +1,4 @@
-//! Joins two partial reconstructions that have one photograph in common: read, lift superpixels, merge, look at the verdict, write.
+//! Joins two partial reconstructions that have one photograph in common: read, merge, look at the verdict, write.
 //!
 //!     cargo run --release --example 02_merge_two
 
@@ -9,9 +9,9 @@ use std::path::Path;
 
 use cityweld::export::write_merge;
 use cityweld::geometry::{Rotation3, Similarity, Vector3};
-use cityweld::imagery::{SuperpixelOptions, SuperpixelSource, lift_superpixels_of};
-use cityweld::merging::{JoinOptions, Part, join};
+use cityweld::imagery::SuperpixelSource;
 use cityweld::reconstruction::{ImageIndex, PointIndex, Reconstruction, read_reconstruction};
+use cityweld::{MergeOptions, MergePart};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
@@ -25,18 +25,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let sfms = [seen_from(&whole, 0..2), seen_from(&whole, 1..4).transformed(&elsewhere)];
 
+    let named = ["west", "east"].into_iter().zip(sfms);
+    let parts = named.map(|(name, sfm)| MergePart { name: name.into(), sfm, start: None }).collect();
+
     // The superpixels of the shared photograph: each is a plane in one part and holds points of the other.
     let labels = SuperpixelSource::Labels(sample.join("labels"));
-    let shared = whole.images[1].name.clone();
-    let mut parts = Vec::new();
-    for (name, sfm) in ["west", "east"].into_iter().zip(sfms) {
-        let is_shared = |image: &cityweld::reconstruction::Image| image.name == shared;
-        let superpixels = lift_superpixels_of(&sfm, &is_shared, &labels, &SuperpixelOptions::default(), &|_, _| ())?;
-        println!("{name}: {} images, {} points", sfm.images.len(), sfm.points.len());
-        parts.push(Part { name: name.into(), sfm, superpixels: Some(superpixels), anchor: None });
-    }
-
-    let merged = join(&parts, &JoinOptions::default(), &|_| ())?;
+    let options = MergeOptions { superpixels: Some(labels), ..MergeOptions::default() };
+    let merged = cityweld::merge(parts, None, &options, &|_| ())?;
     println!("{}: {}", merged.verdict.word(), merged.reason);
     if let Some(west_from_east) = &merged.parts[1].merged_from_part {
         println!("scale {:.6} (1 / 0.4 is right)", west_from_east.scale);

@@ -18,7 +18,7 @@ mod rigs;
 use self::cameras::Cameras;
 use self::model::build;
 use self::moved::Moved;
-use self::photographs::Darkroom;
+use self::photographs::PhotoFuser;
 use self::points::PointSets;
 use super::ledger::Ledger;
 use super::limits::MergeLimits;
@@ -37,7 +37,7 @@ pub(super) fn fuse(
     let moved: Vec<Moved<'_>> = placed.iter().map(|&p| Moved::of(&parts[p].sfm, places[p].as_ref())).collect();
     let cameras = Cameras::of(&moved);
     let mut sets = PointSets::of(&moved, limits);
-    let photos = Darkroom { moved: &moved, sets: &mut sets, ledger: &mut ledger, limits }.photos();
+    let photos = PhotoFuser { moved: &moved, sets: &mut sets, ledger: &mut ledger, limits }.photos();
     let (sfm, origins) = build(&moved, &cameras, &sets, photos, &mut ledger);
     let part_of_point = origins.iter().map(|&k| placed[k] as u32).collect();
     (Fused { sfm, part_of_point }, ledger)

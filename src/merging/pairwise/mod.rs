@@ -13,6 +13,7 @@
 mod camera_rows;
 mod design_effect;
 mod disagreement;
+mod fault;
 mod fit;
 mod joint;
 mod judge;
@@ -34,6 +35,7 @@ mod track_testimony;
 mod umeyama;
 mod whole_planes;
 
+pub(super) use fault::PairFault;
 #[cfg(test)]
 pub(super) use fit::Fit;
 pub(super) use fit::OwnFit;

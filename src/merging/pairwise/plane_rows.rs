@@ -181,10 +181,6 @@ impl Source for PlaneRows<'_> {
         MEDIAN_SIZE
     }
 
-    fn bend_unit(&self) -> f64 {
-        1.0
-    }
-
     fn bend(&self) -> f64 {
         self.bend
     }

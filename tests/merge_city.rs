@@ -1,4 +1,5 @@
-//! `cityweld merge --city`: parts that share no photograph meet in the city. On pieces of the sample.
+//! Joining with what is around: `cityweld merge --city`, where parts that share no photograph meet in the city, and label images that
+//! are not there. On pieces of the sample.
 
 mod pieces;
 
@@ -7,6 +8,9 @@ use std::process::Command;
 
 use cityweld::format::read_start;
 use cityweld::geometry::{Rotation3, Similarity, Vector3};
+use cityweld::imagery::SuperpixelSource;
+use cityweld::merging::MergeVerdict;
+use cityweld::{MergeOptions, MergePart};
 use pieces::{blurred, of_sample, piece, sample, share_off, similarity, write_part};
 use serde_json::{Value, json};
 
@@ -54,4 +58,18 @@ fn parts_that_share_no_photograph_meet_in_the_city() {
     let off = share_off([&a.points, &b.points], &(city_from_a.inverse() * city_from_b), &b_from_whole.inverse());
     println!("{off} of the extent off");
     assert!(off < REACH, "{off}");
+}
+
+#[test]
+fn that_no_label_image_is_that_of_a_shared_photograph_is_told() {
+    let (whole, nothing) = (sample(), tempfile::tempdir().unwrap());
+    let part = |name: &str, images| {
+        let sfm = piece(&whole, images, &Similarity::identity());
+        MergePart { name: name.to_owned(), sfm, start: None }
+    };
+    let labels = SuperpixelSource::Labels(nothing.path().to_owned());
+    let options = MergeOptions { superpixels: Some(labels), ..MergeOptions::default() };
+    let merged = cityweld::merge(vec![part("a", 0..13), part("b", 12..24)], None, &options, &|_| ()).unwrap();
+    assert_eq!(merged.verdict, MergeVerdict::Merged, "{}", merged.reason);
+    assert!(matches!(&merged.warnings[..], [told] if told.contains("no file there")), "{:?}", merged.warnings);
 }

@@ -30,7 +30,8 @@ pub struct KeypointLimits {
     /// Keypoints this near to each other are one, as a share of the photograph's width. Chosen: 1.4 pixels of 1400, what an
     /// undistortion or a change of size leaves.
     pub same_share: f64,
-    /// Keypoints nearer than this are one in small photographs too, pixels. Chosen: no tool writes keypoints better than whole pixels at worst.
+    /// Keypoints nearer than this are one in small photographs too, pixels. Chosen: some tools
+    /// write whole pixels.
     pub same_px: f64,
     /// One sigma of a keypoint, pixels. Chosen: detectors reach a third to a half, reconstructions leave about one.
     pub sigma_px: f64,
@@ -51,7 +52,8 @@ pub struct SharedPlaneLimits {
     /// A point further from the plane's centre than this many of its longer spreads lies beside it. Derived: points that fill a disc reach
     /// two spreads, four points of it may have a third of the spread of all.
     pub beside_spreads: f64,
-    /// Where the poses are known, a point is on a patch within so many times the median distance of neighbours, and what the bend adds. Chosen.
+    /// Where the poses are known, a point is on a patch within so many times the median distance of neighbours, and what the
+    /// bend adds. Chosen.
     pub partner_spacings: f64,
     /// The bend adds so many of its sigmas. Derived: 99.7 % of Gaussian errors.
     pub partner_bends: f64,
@@ -62,13 +64,14 @@ pub struct SharedPlaneLimits {
 /// How a pose is fitted to what two parts share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitLimits {
-    /// What is further off than this many sigmas is a mismatch, and has no weight. Derived: chi-square of the three freedoms of a point pair
+    /// What is further off than this many sigmas is a mismatch, and has no weight. Derived: chi-square of the three freedoms
+    /// of a point pair
     /// leaves one in a thousand beyond 4.03.
     pub gate_sigmas: f64,
     /// The bend of two parts against each other is sought between these. Chosen: what no data have, and what no judge lets pass.
     pub least_bend: f64,
     pub most_bend: f64,
-    /// The bend before anything is known of it. Chosen: half of what parts of one place were seen to bend at most.
+    /// The bend before anything is known of it. Chosen: as the floor of an edge.
     pub first_bend: f64,
     /// All observations of one source count at most as so many independent ones. Chosen: their bend is common to neighbours.
     pub independent: f64,
@@ -94,7 +97,7 @@ pub struct CameraFitLimits {
 /// How hypotheses are drawn, ranked and kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSearchLimits {
-    /// Pairs, groups of points on planes, and points of a group that rank hypotheses. Derived: more change the third digit.
+    /// Pairs, groups of points on planes, and points of a group that rank hypotheses. Chosen: more say nothing new.
     pub scored_pairs: usize,
     pub scored_groups: usize,
     pub scored_in_group: usize,
@@ -138,8 +141,8 @@ pub struct SourceLimits {
 pub struct PairJudgeLimits {
     /// What agrees must exceed chance by this factor. Chosen.
     pub chance_factor: f64,
-    /// Coincident keypoints must exceed chance by this many of its standard deviations as well. Chosen: more than the false alarms of a verdict ask for (3.1),
-    /// since keypoints gather where there is texture, and chance is then no Poisson number.
+    /// Coincident keypoints must exceed chance by this many of its standard deviations as well. Chosen: beyond the 3.1 that
+    /// the false alarms of a verdict ask for.
     pub chance_sigmas: f64,
     /// Fewer pairs fix nothing. Derived: seven unknowns, each five times over.
     pub fewest_pairs: usize,
@@ -152,7 +155,7 @@ pub struct PairJudgeLimits {
     pub own_error_share: f64,
     /// Bend beyond which two parts are not the same thing. Chosen: a per cent of the extent.
     pub most_bend: f64,
-    /// The nearest of the shared cameras must agree to this turn and shift. Chosen: what a sound part's cameras keep well within.
+    /// The nearest of the shared cameras must agree to this turn and shift. Chosen.
     pub most_turn_deg: f64,
     pub most_shift: f64,
     /// The shift may be greater by so many times what the focal lengths' difference moves a camera by. Chosen.
@@ -165,7 +168,8 @@ pub struct PairJudgeLimits {
     pub stretch_rest: f64,
     /// How firmly a stretch is held at none where the data say nothing of it: a share of what they say on average. Chosen.
     pub stretch_hold: f64,
-    /// Residuals of points on planes are compared at this quantile. Derived: a stretch along an axis leaves the planes along that axis where
+    /// Residuals of points on planes are compared at this quantile. Derived: a stretch along an axis leaves the planes along
+    /// that axis where
     /// they are, which may be more than half of all; wrong points are fewer than the rest.
     pub stretch_quantile: f64,
     /// One sigma beyond which a freedom is not determined; a smaller difference of two sources is no matter. Chosen: 0.15 % of
@@ -176,10 +180,11 @@ pub struct PairJudgeLimits {
 /// How edges are held against each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NetworkLimits {
-    /// No edge is known better than this in any of the seven unknowns, one sigma: parts bend, which their covariances do not tell. Measured:
+    /// No edge is known better than this in any of the seven unknowns, one sigma: parts bend, which their covariances do not
+    /// tell. Measured:
     /// parts that belong together err by up to 0.4 % of the extent, all unknowns together.
     pub edge_floor: f64,
-    /// An edge further off than this many sigmas pulls no harder. Chosen: what closes a cycle is not bounded.
+    /// An edge further off than this many sigmas pulls no harder. Chosen: about what a cycle may miss by.
     pub pull_sigmas: f64,
     /// Surfaces that both parts see are not used where they lie further apart than this many floors. Derived: each part's own place in the
     /// city may be wrong by one.
@@ -189,10 +194,8 @@ pub struct NetworkLimits {
 /// What is one in the fused model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FuseLimits {
-    /// Parts bend against each other by about this. Chosen: between what rendered and real parts do.
+    /// Parts bend against each other by about this; points of two parts are one within the gate of a fit. Chosen.
     pub bend: f64,
-    /// Two points at one pixel are one where they are nearer than this many sigmas. Derived: as the gate of a fit.
-    pub same_point_sigmas: f64,
     /// A point of the other part that misses its keypoint in the fused photograph by more than this share of the width is not
     /// tied to it any longer. Chosen.
     pub far_from_keypoint_share: f64,
@@ -227,7 +230,7 @@ impl Default for MergeLimits {
             sources: SourceLimits { disagree_sigmas: 4.7, on_plane: 4e-3, contradicted_share: 0.5, elsewhere: 0.05 },
             judge: PairJudgeLimits::default(),
             network: NetworkLimits { edge_floor: 5e-3, pull_sigmas: 5.0, overlap_floors: 2.0 },
-            fuse: FuseLimits { bend: 3e-3, same_point_sigmas: 4.0, far_from_keypoint_share: 0.02 },
+            fuse: FuseLimits { bend: 3e-3, far_from_keypoint_share: 0.02 },
         }
     }
 }

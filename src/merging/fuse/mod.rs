@@ -3,7 +3,8 @@
 //! Question     which cameras, photographs, points and observations of the parts are the same?
 //! Input        the parts, and the places of those that have one
 //! Output       one reconstruction, and a [`Ledger`] of what became of everything
-//! Method       cameras of the same numbers are one. Versions of one photograph are laid over each other, the one that sees most points giving
+//! Method       cameras of the same numbers are one. Versions of one photograph are laid over each other, the one that sees
+//!              most points giving
 //!              the pose; keypoints of one pixel tell which points may be one, and their covariances whether they are
 //! Assumptions  a photograph of one name shows the same pixels in all parts, at whatever size
 //! Fails when   nothing: what cannot be kept is counted with its reason

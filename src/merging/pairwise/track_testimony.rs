@@ -48,7 +48,8 @@ impl Testimony for TrackTestimony<'_> {
         mirrored(self.mirror_gain(fit), limits)
     }
 
-    /// The affine map of the inliers alone. Directions in which the pairs do not spread say nothing of stretch: they are held at that of the similarity.
+    /// The affine map of the inliers alone. Directions in which the pairs do not spread say nothing of stretch: they are
+    /// held at that of the similarity.
     fn stretch(&self, fit: &Fit) -> Option<Stretch> {
         let inliers: Vec<&PointPair> =
             self.evidence.pairs.iter().zip(&fit.inliers).filter(|(_, i)| **i).map(|(p, _)| p).collect();

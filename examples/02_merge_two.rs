@@ -1,4 +1,4 @@
-//! Joins two partial reconstructions that have one photograph in common: read, lift superpixels, merge, look at the verdict, write.
+//! Joins two partial reconstructions that have one photograph in common: read, merge, look at the verdict, write.
 //!
 //!     cargo run --release --example 02_merge_two
 
@@ -8,8 +8,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use cityweld::{
-    ImageIndex, JoinOptions, Part, PointIndex, Reconstruction, Rotation3, Similarity, SuperpixelOptions,
-    SuperpixelSource, Vector3, join, lift_superpixels_of, read_reconstruction, write_merge,
+    ImageIndex, MergeOptions, MergePart, PointIndex, Reconstruction, Rotation3, Similarity, SuperpixelSource, Vector3,
+    merge, read_reconstruction, write_merge,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -24,18 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let sfms = [seen_from(&whole, 0..2), seen_from(&whole, 1..4).transformed(&elsewhere)];
 
+    let named = ["west", "east"].into_iter().zip(sfms);
+    let parts = named.map(|(name, sfm)| MergePart { name: name.into(), sfm, start: None }).collect();
+
     // The superpixels of the shared photograph: each is a plane in one part and holds points of the other.
     let labels = SuperpixelSource::Labels(sample.join("labels"));
-    let shared = whole.images[1].name.clone();
-    let mut parts = Vec::new();
-    for (name, sfm) in ["west", "east"].into_iter().zip(sfms) {
-        let is_shared = |image: &cityweld::Image| image.name == shared;
-        let superpixels = lift_superpixels_of(&sfm, &is_shared, &labels, &SuperpixelOptions::default(), &())?;
-        println!("{name}: {} images, {} points", sfm.images.len(), sfm.points.len());
-        parts.push(Part { name: name.into(), sfm, superpixels: Some(superpixels), anchor: None });
-    }
-
-    let merged = join(&parts, &JoinOptions::default(), &())?;
+    let options = MergeOptions { superpixels: Some(labels), ..MergeOptions::default() };
+    let merged = merge(parts, None, &options, &())?;
     println!("{}: {}", merged.verdict.word(), merged.reason);
     if let Some(west_from_east) = &merged.parts[1].merged_from_part {
         println!("scale {:.6} (1 / 0.4 is right)", west_from_east.scale);

@@ -3,7 +3,8 @@
 //! Question     how do several reconstructions of one place, as they were read, become one, in a city where there is one?
 //! Input        the parts, each with a start where there is a city; label images or photographs, where there are any
 //! Output       [`Merge`]
-//! Method       photographs that several parts have are cut into superpixels that all of them see alike; each part is aligned to the city by
+//! Method       photographs that several parts have are cut into superpixels that all of them see alike; each part is
+//!              aligned to the city by
 //!              itself, which gives it an anchor; [`join`] does the rest
 //! Assumptions  as of [`crate::align()`] and [`join`]
 //! Fails when   a file of a photograph cannot be read; what cannot be joined is a verdict

@@ -1,11 +1,12 @@
-//! `cityweld merge --city`: parts that share no photograph meet in the city. On pieces of the sample.
+//! Joining with what is around: `cityweld merge --city`, where parts that share no photograph meet in the city, and label images that
+//! are not there. On pieces of the sample.
 
 mod pieces;
 
 use std::path::Path;
 use std::process::Command;
 
-use cityweld::{Rotation3, Similarity, Vector3, read_start};
+use cityweld::{MergeOptions, MergePart, MergeVerdict, Rotation3, Similarity, SuperpixelSource, Vector3, read_start};
 use pieces::{blurred, of_sample, piece, sample, share_off, similarity, write_part};
 use serde_json::{Value, json};
 
@@ -53,4 +54,18 @@ fn parts_that_share_no_photograph_meet_in_the_city() {
     let off = share_off([&a.points, &b.points], &(city_from_a.inverse() * city_from_b), &b_from_whole.inverse());
     println!("{off} of the extent off");
     assert!(off < REACH, "{off}");
+}
+
+#[test]
+fn that_no_label_image_is_that_of_a_shared_photograph_is_told() {
+    let (whole, nothing) = (sample(), tempfile::tempdir().unwrap());
+    let part = |name: &str, images| {
+        let sfm = piece(&whole, images, &Similarity::identity());
+        MergePart { name: name.to_owned(), sfm, start: None }
+    };
+    let labels = SuperpixelSource::Labels(nothing.path().to_owned());
+    let options = MergeOptions { superpixels: Some(labels), ..MergeOptions::default() };
+    let merged = cityweld::merge(vec![part("a", 0..13), part("b", 12..24)], None, &options, &()).unwrap();
+    assert_eq!(merged.verdict, MergeVerdict::Merged, "{}", merged.reason);
+    assert!(matches!(&merged.warnings[..], [told] if told.contains("no file there")), "{:?}", merged.warnings);
 }

@@ -5,7 +5,7 @@
 //! that holds 98 % of a part's points; half of such a share is one of the extent.
 
 use crate::limits::{Limits, PatchLimits, VerdictLimits};
-use crate::robust::chi_square_beyond;
+use crate::robust::{Motion, chi_square_beyond};
 
 /// The numbers that decide.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,8 @@ pub struct KeypointLimits {
     /// Keypoints this near to each other are one, as a share of the photograph's width. Chosen: 1.4 pixels of 1400, what an
     /// undistortion or a change of size leaves.
     pub same_share: f64,
-    /// ... and at least this near, pixels. Chosen: no tool writes keypoints better than whole pixels at worst.
+    /// Keypoints nearer than this are one in small photographs too, pixels. Chosen: some tools
+    /// write whole pixels.
     pub same_px: f64,
     /// One sigma of a keypoint, pixels. Chosen: detectors reach a third to a half, reconstructions leave about one.
     pub sigma_px: f64,
@@ -51,9 +52,10 @@ pub struct SharedPlaneLimits {
     /// A point further from the plane's centre than this many of its longer spreads lies beside it. Derived: points that fill a disc reach
     /// two spreads, four points of it may have a third of the spread of all.
     pub beside_spreads: f64,
-    /// Where the poses are known, a partner is no further than so many times the median distance of neighbours ... Chosen.
+    /// Where the poses are known, a point is on a patch within so many times the median distance of neighbours, and what the
+    /// bend adds. Chosen.
     pub partner_spacings: f64,
-    /// ... and so many sigmas of the bend. Derived: 99.7 % of Gaussian errors.
+    /// The bend adds so many of its sigmas. Derived: 99.7 % of Gaussian errors.
     pub partner_bends: f64,
     /// Fewer points of the other part on a patch may be there by chance. Chosen.
     pub fewest_partners: usize,
@@ -62,15 +64,16 @@ pub struct SharedPlaneLimits {
 /// How a pose is fitted to what two parts share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitLimits {
-    /// What is further off than this many sigmas is a mismatch, and has no weight. Derived: chi-square of the three freedoms of a point pair
+    /// What is further off than this many sigmas is a mismatch, and has no weight. Derived: chi-square of the three freedoms
+    /// of a point pair
     /// leaves one in a thousand beyond 4.03.
     pub gate_sigmas: f64,
-    /// The bend of two parts against each other is sought between these ... Chosen: what no data have, and what no judge lets pass.
+    /// The bend of two parts against each other is sought between these. Chosen: what no data have, and what no judge lets pass.
     pub least_bend: f64,
     pub most_bend: f64,
-    /// ... and is this before anything is known of it. Chosen: half of what parts of one place were seen to bend at most.
+    /// The bend before anything is known of it. Chosen: as the floor of an edge.
     pub first_bend: f64,
-    /// As many independent observations all of one source count at most. Chosen: their bend is common to neighbours.
+    /// All observations of one source count at most as so many independent ones. Chosen: their bend is common to neighbours.
     pub independent: f64,
     /// An estimate scatters at least by this share of the variance that its rows state. Derived: rows claim keypoints with one sigma of a
     /// pixel; no detector is better than a fifth of that.
@@ -83,7 +86,7 @@ pub struct FitLimits {
 pub struct CameraFitLimits {
     /// One sigma of a camera's rotation between two reconstructions, radians. Chosen: a pixel or two of a photograph.
     pub turn_sigma_rad: f64,
-    /// ... which a difference of the focal lengths (as a share) adds to. Chosen.
+    /// A difference of the focal lengths, as a share, adds so many radians for each of it. Chosen.
     pub turn_per_focal_doubt: f64,
     /// One sigma of its centre, bends. Chosen: cameras bend with their points.
     pub center_bends: f64,
@@ -94,7 +97,7 @@ pub struct CameraFitLimits {
 /// How hypotheses are drawn, ranked and kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSearchLimits {
-    /// Pairs, groups of points on planes, and points of a group that rank hypotheses. Derived: more change the third digit.
+    /// Pairs, groups of points on planes, and points of a group that rank hypotheses. Chosen: more say nothing new.
     pub scored_pairs: usize,
     pub scored_groups: usize,
     pub scored_in_group: usize,
@@ -127,19 +130,19 @@ pub struct SourceLimits {
     pub disagree_sigmas: f64,
     /// A point this near to its plane lies on it, whatever its sigmas. Chosen: 0.2 % of the extent.
     pub on_plane: f64,
-    /// Planes contradict a place where less than this share of what agrees at their own place agrees ... Chosen.
+    /// Planes contradict a place where less than this share of what agrees at their own place agrees. Chosen.
     pub contradicted_share: f64,
-    /// ... or where their own is further away than this. Chosen: no bend of a sound part does that.
+    /// Planes whose own place is further away than this contradict it, too. Chosen: no bend of a sound part does that.
     pub elsewhere: f64,
 }
 
 /// Whether two parts belong together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairJudgeLimits {
-    /// What agrees must exceed chance by this factor ... Chosen.
+    /// What agrees must exceed chance by this factor. Chosen.
     pub chance_factor: f64,
-    /// ... and coincident keypoints by this many standard deviations of chance. Chosen: more than the false alarms of a verdict ask for (3.1),
-    /// since keypoints gather where there is texture, and chance is then no Poisson number.
+    /// Coincident keypoints must exceed chance by this many of its standard deviations as well. Chosen: beyond the 3.1 that
+    /// the false alarms of a verdict ask for.
     pub chance_sigmas: f64,
     /// Fewer pairs fix nothing. Derived: seven unknowns, each five times over.
     pub fewest_pairs: usize,
@@ -152,20 +155,21 @@ pub struct PairJudgeLimits {
     pub own_error_share: f64,
     /// Bend beyond which two parts are not the same thing. Chosen: a per cent of the extent.
     pub most_bend: f64,
-    /// The nearest of the shared cameras must agree to this. Chosen ...
+    /// The nearest of the shared cameras must agree to this turn and shift. Chosen.
     pub most_turn_deg: f64,
     pub most_shift: f64,
-    /// ... and to so many times what the focal lengths' difference moves it by. Chosen.
+    /// The shift may be greater by so many times what the focal lengths' difference moves a camera by. Chosen.
     pub shift_focal_doubts: f64,
     /// A mirrored part explains this many times more where a part is a mirror image. Chosen.
     pub mirror_gain: f64,
-    /// A free stretch that is greater than this ... Chosen.
+    /// An affine map that stretches by more than this shows a stretched part. Chosen.
     pub most_stretch: f64,
-    /// ... and leaves less than this share of the residual shows a stretched part. Chosen.
+    /// It must leave less than this share of the residual, too. Chosen.
     pub stretch_rest: f64,
     /// How firmly a stretch is held at none where the data say nothing of it: a share of what they say on average. Chosen.
     pub stretch_hold: f64,
-    /// Residuals of points on planes are compared at this quantile. Derived: a stretch along an axis leaves the planes along that axis where
+    /// Residuals of points on planes are compared at this quantile. Derived: a stretch along an axis leaves the planes along
+    /// that axis where
     /// they are, which may be more than half of all; wrong points are fewer than the rest.
     pub stretch_quantile: f64,
     /// One sigma beyond which a freedom is not determined; a smaller difference of two sources is no matter. Chosen: 0.15 % of
@@ -176,10 +180,11 @@ pub struct PairJudgeLimits {
 /// How edges are held against each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NetworkLimits {
-    /// No edge is known better than this in any of the seven unknowns, one sigma: parts bend, which their covariances do not tell. Measured:
+    /// No edge is known better than this in any of the seven unknowns, one sigma: parts bend, which their covariances do not
+    /// tell. Measured:
     /// parts that belong together err by up to 0.4 % of the extent, all unknowns together.
     pub edge_floor: f64,
-    /// An edge further off than this many sigmas pulls no harder. Chosen: what closes a cycle is not bounded.
+    /// An edge further off than this many sigmas pulls no harder. Chosen: about what a cycle may miss by.
     pub pull_sigmas: f64,
     /// Surfaces that both parts see are not used where they lie further apart than this many floors. Derived: each part's own place in the
     /// city may be wrong by one.
@@ -189,23 +194,18 @@ pub struct NetworkLimits {
 /// What is one in the fused model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FuseLimits {
-    /// Parts bend against each other by about this. Chosen: between what rendered and real parts do.
+    /// Parts bend against each other by about this; points of two parts are one within the gate of a fit. Chosen.
     pub bend: f64,
-    /// Two points at one pixel are one where they are nearer than this many sigmas. Derived: as the gate of a fit.
-    pub same_point_sigmas: f64,
     /// A point of the other part that misses its keypoint in the fused photograph by more than this share of the width is not
     /// tied to it any longer. Chosen.
     pub far_from_keypoint_share: f64,
 }
 
-/// Unknowns of a similarity.
-const UNKNOWNS: u32 = 7;
-
 impl MergeLimits {
     /// A cycle that misses by more sigmas has a wrong edge in it: the root of the chi-square of seven freedoms that chance exceeds as
     /// rarely as the false alarms that are allowed (4.93 at one in a thousand).
     pub fn cycle_sigmas(&self) -> f64 {
-        chi_square_beyond(UNKNOWNS, self.verdict.false_alarm).sqrt()
+        chi_square_beyond(Motion::Similarity.unknowns() as u32, self.verdict.false_alarm).sqrt()
     }
 
     /// Places that differ by less are one place, share of the radius: what one edge at its floor may miss by.
@@ -224,68 +224,92 @@ impl Default for MergeLimits {
             verdict: limits.verdict,
             patches: PatchLimits { most_points: MOST_POINTS, ..limits.patches },
             keypoints: KeypointLimits { same_share: 1e-3, same_px: 1.0, sigma_px: 1.0 },
-            planes: SharedPlaneLimits {
-                superpixels: 1100,
-                fewest_points: 4,
-                flatness: 0.25,
-                edge_on: 0.2,
-                beside_spreads: 6.0,
-                partner_spacings: 4.0,
-                partner_bends: 3.0,
-                fewest_partners: 3,
-            },
-            fit: FitLimits {
-                gate_sigmas: 4.0,
-                least_bend: 1e-7,
-                most_bend: 5e-2,
-                first_bend: 5e-3,
-                independent: 200.0,
-                least_effect: 0.04,
-                cameras: CameraFitLimits {
-                    turn_sigma_rad: 1.5e-3,
-                    turn_per_focal_doubt: 0.05,
-                    center_bends: 1.0,
-                    gate_medians: 3.0,
-                },
-            },
-            search: PairSearchLimits {
-                scored_pairs: 250,
-                scored_groups: 200,
-                scored_in_group: 4,
-                fewest_pair_samples: 2048,
-                most_pair_samples: 8192,
-                enough_hits: 20,
-                kept_by_pairs: 5,
-                plane_samples: 8192,
-                kept_by_planes: 40,
-                plane_bend: 1e-2,
-                narrowing_bends: [1e-2, 5e-3, 3e-3],
-                same_shift: 0.05,
-                same_turn_rad: 0.1,
-                same_log_scale: 0.1,
-            },
+            planes: SharedPlaneLimits::default(),
+            fit: FitLimits::default(),
+            search: PairSearchLimits::default(),
             sources: SourceLimits { disagree_sigmas: 4.7, on_plane: 4e-3, contradicted_share: 0.5, elsewhere: 0.05 },
-            judge: PairJudgeLimits {
-                chance_factor: 3.0,
-                chance_sigmas: 5.0,
-                fewest_pairs: 12,
-                fewest_planes: 8,
-                fewest_on_planes: 21,
-                agreeing_share: 0.5,
-                own_error_share: 0.006,
-                most_bend: 0.02,
-                most_turn_deg: 4.0,
-                most_shift: 0.06,
-                shift_focal_doubts: 1.5,
-                mirror_gain: 1.15,
-                most_stretch: 1.06,
-                stretch_rest: 0.6,
-                stretch_hold: 1e-2,
-                stretch_quantile: 0.8,
-                determined: 0.003,
-            },
+            judge: PairJudgeLimits::default(),
             network: NetworkLimits { edge_floor: 5e-3, pull_sigmas: 5.0, overlap_floors: 2.0 },
-            fuse: FuseLimits { bend: 3e-3, same_point_sigmas: 4.0, far_from_keypoint_share: 0.02 },
+            fuse: FuseLimits { bend: 3e-3, far_from_keypoint_share: 0.02 },
+        }
+    }
+}
+
+impl Default for SharedPlaneLimits {
+    fn default() -> Self {
+        SharedPlaneLimits {
+            superpixels: 1100,
+            fewest_points: 4,
+            flatness: 0.25,
+            edge_on: 0.2,
+            beside_spreads: 6.0,
+            partner_spacings: 4.0,
+            partner_bends: 3.0,
+            fewest_partners: 3,
+        }
+    }
+}
+
+impl Default for FitLimits {
+    fn default() -> Self {
+        FitLimits {
+            gate_sigmas: 4.0,
+            least_bend: 1e-7,
+            most_bend: 5e-2,
+            first_bend: 5e-3,
+            independent: 200.0,
+            least_effect: 0.04,
+            cameras: CameraFitLimits {
+                turn_sigma_rad: 1.5e-3,
+                turn_per_focal_doubt: 0.05,
+                center_bends: 1.0,
+                gate_medians: 3.0,
+            },
+        }
+    }
+}
+
+impl Default for PairSearchLimits {
+    fn default() -> Self {
+        PairSearchLimits {
+            scored_pairs: 250,
+            scored_groups: 200,
+            scored_in_group: 4,
+            fewest_pair_samples: 2048,
+            most_pair_samples: 8192,
+            enough_hits: 20,
+            kept_by_pairs: 5,
+            plane_samples: 8192,
+            kept_by_planes: 40,
+            plane_bend: 1e-2,
+            narrowing_bends: [1e-2, 5e-3, 3e-3],
+            same_shift: 0.05,
+            same_turn_rad: 0.1,
+            same_log_scale: 0.1,
+        }
+    }
+}
+
+impl Default for PairJudgeLimits {
+    fn default() -> Self {
+        PairJudgeLimits {
+            chance_factor: 3.0,
+            chance_sigmas: 5.0,
+            fewest_pairs: 12,
+            fewest_planes: 8,
+            fewest_on_planes: 21,
+            agreeing_share: 0.5,
+            own_error_share: 0.006,
+            most_bend: 0.02,
+            most_turn_deg: 4.0,
+            most_shift: 0.06,
+            shift_focal_doubts: 1.5,
+            mirror_gain: 1.15,
+            most_stretch: 1.06,
+            stretch_rest: 0.6,
+            stretch_hold: 1e-2,
+            stretch_quantile: 0.8,
+            determined: 0.003,
         }
     }
 }

@@ -4,7 +4,8 @@
 //!              points and observations are the same?
 //! Input        parts as they were reconstructed, each in a frame of its own; photographs are told by name alone
 //! Output       [`Merge`]: a verdict, every part's place or the reason why it has none, one model, and a balanced [`Ledger`]
-//! Method       each part is prepared once; each two parts that share photographs are compared (`pairwise`); accepted pairs and anchors in a
+//! Method       each part is prepared once; each two parts that share photographs are compared (`pairwise`); accepted pairs
+//!              and anchors in a
 //!              city form a network that is solved as a whole (`network`); what was placed is fused (`fuse`)
 //! Assumptions  a photograph of one name shows the same pixels in both parts, at whatever size
 //! Fails when   two parts share no photograph and no anchor, or their shared photographs have too few keypoints in common

@@ -29,9 +29,9 @@ pub(super) fn shared_photos(a: &Reconstruction, b: &Reconstruction) -> Vec<Share
     found
 }
 
-/// How one version of a photograph lies over another.
+/// Which pixel of one version of a photograph is which of another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Overlay {
+pub(super) struct PixelMap {
     /// Factor from `b`'s pixels to `a`'s along x and y: the photograph may have been scaled.
     pub scale: [f64; 2],
     /// Pixels of `a`, to lay it elsewhere than where it belongs.
@@ -40,11 +40,11 @@ pub(super) struct Overlay {
     pub tolerance: f64,
 }
 
-impl Overlay {
-    pub fn of([a, b]: [&Reconstruction; 2], [in_a, in_b]: [ImageIndex; 2], limits: &KeypointLimits) -> Overlay {
+impl PixelMap {
+    pub fn of([a, b]: [&Reconstruction; 2], [in_a, in_b]: [ImageIndex; 2], limits: &KeypointLimits) -> PixelMap {
         let (to, from) = (a.camera_of(in_a), b.camera_of(in_b));
         let ratio = |to: u64, from: u64| if from == 0 || to == 0 { 1.0 } else { to as f64 / from as f64 };
-        Overlay {
+        PixelMap {
             scale: [ratio(to.width_px, from.width_px), ratio(to.height_px, from.height_px)],
             shift: [0.0; 2],
             tolerance: (limits.same_share * to.width_px as f64).max(limits.same_px),
@@ -102,9 +102,9 @@ mod tests {
     fn links_each_keypoint_to_its_nearest_once() {
         let a = [at(10.0, 10.0), at(50.0, 50.0)];
         let b = [at(5.2, 5.0), at(5.4, 5.1), at(25.0, 25.0), at(90.0, 1.0)];
-        let overlay = Overlay { scale: [2.0, 2.0], shift: [0.0, 0.0], tolerance: 1.4 };
-        assert_eq!(overlay.same_keypoints(&a, &b, &|_| true), [(0, 0), (1, 2)]);
-        let shifted = Overlay { shift: [9.0, 0.0], ..overlay };
+        let pixels = PixelMap { scale: [2.0, 2.0], shift: [0.0, 0.0], tolerance: 1.4 };
+        assert_eq!(pixels.same_keypoints(&a, &b, &|_| true), [(0, 0), (1, 2)]);
+        let shifted = PixelMap { shift: [9.0, 0.0], ..pixels };
         assert!(shifted.same_keypoints(&a, &b, &|_| true).is_empty());
     }
 }

@@ -13,11 +13,11 @@ use crate::robust::median;
 /// The points of a part's patches, in its own frame.
 pub(super) struct Surfaces {
     pub points: Vec<KnownPoint>,
-    /// For each point its patch ...
+    /// For each point its patch.
     pub patch_of: Vec<u32>,
-    /// ... and for each patch its normal, towards the cameras ...
+    /// For each patch its normal, towards the cameras.
     pub normals: Vec<Vector3<f64>>,
-    /// ... and a place from which it was seen.
+    /// For each patch a place from which it was seen.
     pub eyes: Vec<Point3<f64>>,
     /// Median distance from a point to its nearest neighbour.
     pub spacing: f64,

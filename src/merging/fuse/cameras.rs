@@ -12,7 +12,7 @@ pub(super) struct Cameras {
     pub cameras: Vec<Camera>,
     /// Index by part and camera, into `cameras`.
     pub index: Vec<Vec<u32>>,
-    /// By part and camera: true where its rig has no other sensor.
+    /// For each part and camera whether its rig has no other sensor.
     pub alone: Vec<Vec<bool>>,
 }
 

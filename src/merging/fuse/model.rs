@@ -9,7 +9,7 @@ use crate::geometry::Point3;
 use crate::merging::ledger::{DropReason, Ledger};
 use crate::reconstruction::{CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction};
 
-/// Of points without colour.
+/// The colour of points that have none.
 const GREY: [u8; 3] = [128; 3];
 
 /// The model, and for each of its points the (placed) part that it comes from.

@@ -5,7 +5,7 @@ use crate::reconstruction::{Image, ImageIndex, Observation, PointIndex, Reconstr
 
 /// A part in the merged frame.
 pub(super) struct Moved<'a> {
-    /// As it was given: keypoints and tracks are taken from here, since no frame changes them.
+    /// The part as it was given: keypoints and tracks are taken from here, since no frame changes them.
     pub given: &'a Reconstruction,
     /// Its points and poses where they belong.
     pub posed: Reconstruction,

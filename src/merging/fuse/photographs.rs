@@ -7,7 +7,7 @@ use super::moved::Moved;
 use super::points::PointSets;
 use crate::merging::ledger::{DropReason, Ledger};
 use crate::merging::limits::MergeLimits;
-use crate::merging::shared_photos::Overlay;
+use crate::merging::shared_photos::PixelMap;
 use crate::reconstruction::{ImageIndex, Observation};
 
 /// A photograph of the result.
@@ -30,14 +30,14 @@ pub(super) struct Keypoint {
 type Version = (usize, ImageIndex);
 
 /// What photographs are fused with.
-pub(super) struct Darkroom<'a, 'b> {
+pub(super) struct PhotoFuser<'a, 'b> {
     pub moved: &'a [Moved<'a>],
     pub sets: &'b mut PointSets<'a>,
     pub ledger: &'b mut Ledger,
     pub limits: &'a MergeLimits,
 }
 
-impl Darkroom<'_, '_> {
+impl PhotoFuser<'_, '_> {
     /// Every photograph once; a point is seen once in each.
     pub fn photos(&mut self) -> Vec<Photo> {
         let mut photos: Vec<Photo> =
@@ -79,15 +79,15 @@ impl Darkroom<'_, '_> {
 
     fn add_version(&mut self, photo: &mut Photo, (other, image): Version) {
         let (given, theirs) = (self.moved[photo.part].given, self.moved[other].keypoints(image));
-        let overlay = Overlay::of([given, self.moved[other].given], [photo.image, image], &self.limits.keypoints);
+        let pixels = PixelMap::of([given, self.moved[other].given], [photo.image, image], &self.limits.keypoints);
         let ours: Vec<Observation> =
             photo.keypoints.iter().map(|k| Observation { x_px: k.x_px, y_px: k.y_px, point: None }).collect();
         let mut partner = vec![None; theirs.len()];
-        for (i, j) in overlay.same_keypoints(&ours, theirs, &|_| true) {
+        for (i, j) in pixels.same_keypoints(&ours, theirs, &|_| true) {
             partner[j as usize] = Some(i as usize);
         }
         for (o, partner) in theirs.iter().zip(partner) {
-            let [x_px, y_px] = overlay.carried(o);
+            let [x_px, y_px] = pixels.carried(o);
             let key = o.point.map(|p| self.sets.key(other, p)).filter(|key| self.stays(photo, *key, [x_px, y_px]));
             match (partner, key) {
                 (Some(i), Some(key)) => match photo.keypoints[i].key {
@@ -121,7 +121,7 @@ impl Darkroom<'_, '_> {
     /// A point is seen once in a photograph: its first keypoint stays. Another one at the same pixel is the same observation again.
     fn unlink_seconds(&mut self, photo: &mut Photo) {
         let given = self.moved[photo.part].given;
-        let tolerance = Overlay::of([given; 2], [photo.image; 2], &self.limits.keypoints).tolerance;
+        let tolerance = PixelMap::of([given; 2], [photo.image; 2], &self.limits.keypoints).tolerance;
         let mut first: BTreeMap<u32, (f64, f64)> = BTreeMap::new();
         for Keypoint { x_px, y_px, key } in &mut photo.keypoints {
             let Some(root) = key.map(|k| self.sets.root(k)) else { continue };

@@ -93,7 +93,7 @@ impl PointSets<'_> {
         let ((xa, ca), (xb, cb)) = (self.uncertainty(a), self.uncertainty(b));
         let covariance = ca + cb + Matrix3::identity() * (self.bend * self.bend);
         let apart: Vector3<f64> = xa - xb;
-        let gate = self.limits.fuse.same_point_sigmas;
+        let gate = self.limits.fit.gate_sigmas;
         covariance.try_inverse().is_some_and(|info| apart.dot(&(info * apart)) < gate * gate)
     }
 

@@ -5,15 +5,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::graph::{EdgeId, Network};
+use super::graph::{EdgeId, Network, derivative};
 use crate::geometry::Similarity;
 use crate::merging::extent::Extent;
 use crate::robust::{Chart, Matrix7, Vector7};
 
 const ROUNDS: usize = 20;
 const CONVERGED: f64 = 1e-10;
-/// Step of numerical derivatives, share of the radius.
-const DIFFERENCE: f64 = 1e-6;
 
 /// How firmly a part is held in the merged frame.
 #[derive(Clone, Debug)]
@@ -78,15 +76,12 @@ impl Adjustment<'_> {
             };
             let mut jacobian = DMatrix::zeros(7, size);
             for (k, &p) in self.free.iter().enumerate().filter(|(_, p)| self.network.touches(*edge, **p)) {
-                for column in 0..7 {
-                    let mut nudge = Vector7::zeros();
-                    nudge[column] = DIFFERENCE * self.charts[p].radius;
-                    nudged[p] = poses[p].map(|pose| self.charts[p].moved(&pose, &nudge));
-                    if let Some(moved) = self.network.miss(&nudged, *edge) {
-                        jacobian.set_column(7 * k + column, &((moved - miss) / nudge[column]));
-                    }
-                }
+                let of_part = derivative(self.charts[p].radius, &miss, |nudge| {
+                    nudged[p] = poses[p].map(|pose| self.charts[p].moved(&pose, nudge));
+                    self.network.miss(&nudged, *edge)
+                });
                 nudged[p] = poses[p];
+                jacobian.columns_mut(7 * k, 7).copy_from(&of_part.unwrap_or_else(Matrix7::zeros));
             }
             let gate = self.network.limits.network.pull_sigmas;
             let off = miss.dot(&(own * miss)).max(0.0);

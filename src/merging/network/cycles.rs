@@ -6,13 +6,10 @@
 //!              of the cycle leave open together. A cycle that does not close has a wrong edge in it, and only the other cycles
 //!              say which one
 
-use super::graph::{EdgeId, Network, Placement};
+use super::graph::{EdgeId, Network, Placement, derivative};
 use crate::geometry::Similarity;
 use crate::merging::extent::Extent;
-use crate::robust::{Matrix7, Vector7};
-
-/// Step of numerical derivatives, share of the radius.
-const DIFFERENCE: f64 = 1e-6;
+use crate::robust::{Chart, Matrix7, Vector7};
 
 /// An edge that may be the wrong one, and where the others put the parts.
 struct Suspect {
@@ -22,7 +19,7 @@ struct Suspect {
     strength: usize,
 }
 
-/// By how much an edge misses what the places say.
+/// How far an edge is from what the places say.
 struct Miss {
     /// In its chart's unknowns, as a share of the radius.
     share: f64,
@@ -73,15 +70,11 @@ impl Network<'_> {
             EdgeId::Anchor(p) => p,
         };
         let mut poses = placement.poses.clone();
-        let mut derivative = Matrix7::zeros();
-        for column in 0..7 {
-            let mut nudge = Vector7::zeros();
-            nudge[column] = DIFFERENCE * chart.radius;
-            let motion = common * chart.moved(&Similarity::identity(), &nudge) * common.inverse();
+        derivative(chart.radius, miss, |nudge| {
+            let motion = common * chart.moved(&Similarity::identity(), nudge) * common.inverse();
             poses[end] = Some(motion * placement.poses[end]?);
-            derivative.set_column(column, &((self.miss(&poses, edge)? - miss) / nudge[column]));
-        }
-        Some(derivative)
+            self.miss(&poses, edge)
+        })
     }
 
     fn contradictions(&self, placement: &Placement, without: Option<EdgeId>) -> usize {
@@ -169,12 +162,8 @@ impl Network<'_> {
 
     fn differs(&self, part: usize, one: Option<Similarity>, other: Option<Similarity>) -> bool {
         let (Some(one), Some(other)) = (one, other) else { return one.is_some() != other.is_some() };
-        motion_share(&(one.inverse() * other), &self.parts[part].extent) > self.limits.same_place()
+        let Extent { center, radius } = self.parts[part].extent;
+        let moved = Chart::of_similarity(center, radius).between(&Similarity::identity(), &(one.inverse() * other));
+        moved.norm() > self.limits.same_place() * radius
     }
-}
-
-/// How far a motion carries a scene, as a share of its radius: turned, shifted and scaled.
-fn motion_share(motion: &Similarity, extent: &Extent) -> f64 {
-    let shift = (motion.apply(&extent.center) - extent.center).norm() / extent.radius;
-    motion.rotation.angle().hypot(shift).hypot(motion.scale.ln())
 }

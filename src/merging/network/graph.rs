@@ -9,6 +9,9 @@ use crate::merging::part::Anchor;
 use crate::merging::prepared::PreparedPart;
 use crate::robust::{Chart, Matrix7, Vector7};
 
+/// Step of numerical derivatives, share of the radius.
+const DIFFERENCE: f64 = 1e-6;
+
 /// A measured relation that holds a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EdgeId {
@@ -174,4 +177,19 @@ impl<'a> Network<'a> {
         }
         (0..poses.len()).for_each(|p| self.anchored[p] &= poses[p].is_some());
     }
+}
+
+/// How a miss changes with seven unknowns in a scene of this radius; `miss_at` says what it is beside `miss`.
+pub(super) fn derivative(
+    radius: f64,
+    miss: &Vector7,
+    mut miss_at: impl FnMut(&Vector7) -> Option<Vector7>,
+) -> Option<Matrix7> {
+    let mut derivative = Matrix7::zeros();
+    for column in 0..7 {
+        let mut nudge = Vector7::zeros();
+        nudge[column] = DIFFERENCE * radius;
+        derivative.set_column(column, &((miss_at(&nudge)? - miss) / nudge[column]));
+    }
+    Some(derivative)
 }

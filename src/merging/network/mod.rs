@@ -3,7 +3,8 @@
 //! Question     where does each part stand in one frame, and which of the measured edges are not to be believed?
 //! Input        pairs of parts, each with its estimate and opinion, and anchors in a city
 //! Output       [`Solved`]: a verdict, every part's place or the reason why it has none, the edges
-//! Method       the strongest edges place the parts (`graph`); the edges that the others contradict are put aside (`cycles`); parts that overlap
+//! Method       the strongest edges place the parts (`graph`); the edges that the others contradict are put aside
+//!              (`cycles`); parts that overlap
 //!              in the city alone get an edge (`overlap`); all places are moved to the least squares of all edges (`adjustment`), and told
 //!              (`places`, `freedoms`, `edges`, `verdict`)
 //! Assumptions  wrong edges are fewer than right ones

@@ -11,7 +11,7 @@ use super::graph::Network;
 use crate::geometry::Similarity;
 use crate::merging::limits::MergeLimits;
 use crate::merging::outcome::{Edge, EdgeSource};
-use crate::merging::pairwise::{Opinion, OwnFit, Pair, PlaneEvidence, settle_planes, whole_planes};
+use crate::merging::pairwise::{Opinion, OwnFit, Pair, PairFault, PlaneEvidence, settle_planes, whole_planes};
 use crate::merging::prepared::PreparedPart;
 
 /// Pairs of placed parts that overlap in the city and that no edge joins yet.
@@ -41,11 +41,9 @@ fn overlap(
     let OwnFit { fit, .. } = settle_planes(&planes, a_from_b, &limits.fit);
     let off = off_surfaces(&planes, a_from_b);
     let used = off < limits.network.overlap_floors * floor;
-    let reason = (!used).then(|| {
-        let percent = 50.0 * off / radius;
-        format!("where the city has them, the surfaces that both see lie {percent:.2} % of the extent apart")
-    });
-    let opinion = reason.clone().map_or(Opinion::Together, Opinion::Open);
+    let fault = (!used).then_some(PairFault::SurfacesApart { off: off / radius });
+    let reason = fault.as_ref().map(ToString::to_string);
+    let opinion = fault.map_or(Opinion::Together, Opinion::Open);
     let edge = Edge {
         a,
         b,

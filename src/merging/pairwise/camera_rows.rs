@@ -15,7 +15,7 @@ const LEAST_BEND: f64 = 1e-4;
 
 pub(super) struct CameraRows<'a> {
     pub cameras: Vec<&'a CameraPair>,
-    /// Of the pairs, a's units.
+    /// The pairs' bend, a's units.
     pub bend: f64,
     pub limits: &'a CameraFitLimits,
 }

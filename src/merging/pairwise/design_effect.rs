@@ -9,11 +9,10 @@
 
 use super::rows::Piece;
 use crate::geometry::Point3;
-use crate::robust::{NormalEquations, Vector7};
+use crate::robust::{Motion, NormalEquations, Vector7};
 
 /// Blocks: more than twice the unknowns, and few enough that each spans a good piece of the scene.
 const SPLITS: u32 = 4;
-const UNKNOWNS: f64 = 7.0;
 
 /// The factor on the variance, at least `least`, of what pieces say at the optimum.
 pub(super) fn design_effect(pieces: &[Piece], least: f64) -> f64 {
@@ -22,10 +21,11 @@ pub(super) fn design_effect(pieces: &[Piece], least: f64) -> f64 {
     pieces.iter().for_each(|one| all.merge(&one.sums, 1.0));
     let Some(covariance) = all.full().try_inverse() else { return 1.0 };
     let mut indices: Vec<usize> = (0..places.len()).collect();
+    let unknowns = Motion::Similarity.unknowns() as f64;
     let mut effect = 0.0;
     for block in blocks(&places, &mut indices, SPLITS) {
         let gradient = block.iter().map(|&i| pieces[i].sums.gradient).sum::<Vector7>();
-        effect += gradient.dot(&(covariance * gradient)) / UNKNOWNS;
+        effect += gradient.dot(&(covariance * gradient)) / unknowns;
     }
     if effect.is_finite() { effect.max(least) } else { 1.0 }
 }

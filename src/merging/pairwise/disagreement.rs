@@ -4,8 +4,6 @@ use super::fit::Fit;
 use crate::geometry::Similarity;
 use crate::merging::limits::MergeLimits;
 
-const UNKNOWNS: f64 = 7.0;
-
 /// The difference of two estimates of one pose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Difference {
@@ -13,13 +11,15 @@ pub(super) struct Difference {
     pub sigmas: f64,
     /// Length of u as a share of the radius.
     pub share: f64,
+    /// Unknowns that differ.
+    unknowns: usize,
 }
 
 /// `own` says by itself where the part is; `other` is another opinion.
 pub(super) fn difference(own: &Fit, other: &Similarity) -> Difference {
     let unknowns = own.chart.between(&own.a_from_b, other);
     let sigmas = unknowns.dot(&(own.information * unknowns)).max(0.0).sqrt();
-    Difference { sigmas, share: unknowns.norm() / own.chart.radius }
+    Difference { sigmas, share: unknowns.norm() / own.chart.radius, unknowns: own.chart.motion.unknowns() }
 }
 
 impl Difference {
@@ -30,7 +30,7 @@ impl Difference {
 
     /// How many times the variance must be greater for such a difference to be nothing special, at least 1 (Birge 1932).
     pub fn birge(&self) -> f64 {
-        (self.sigmas * self.sigmas / UNKNOWNS).max(1.0)
+        (self.sigmas * self.sigmas / self.unknowns as f64).max(1.0)
     }
 
     /// "0.42 % of the extent (5.1 sigmas)"

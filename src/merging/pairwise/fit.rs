@@ -24,7 +24,7 @@ pub(in crate::merging) struct Fit {
     pub chart: Chart,
     /// In the chart's unknowns, a's units.
     pub information: Matrix7,
-    /// In the unit of the leading source.
+    /// The leading source's bend, a share of the radius.
     pub bend: f64,
     /// Which observations of the leading source lie within the gate.
     pub inliers: Vec<bool>,
@@ -130,8 +130,7 @@ pub(super) fn own_fit(source: &dyn Source, pose: Similarity, limits: &FitLimits)
 }
 
 fn find_bend(source: &mut impl Source, pose: &Similarity, limits: &FitLimits) {
-    let unit = source.bend_unit();
-    let (mut low, mut high) = (limits.least_bend * unit, limits.most_bend * unit);
+    let (mut low, mut high) = (limits.least_bend, limits.most_bend);
     for _ in 0..HALVINGS {
         let middle = (low * high).sqrt();
         source.set_bend(middle);

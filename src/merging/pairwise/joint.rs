@@ -13,7 +13,8 @@
 //! Assumptions  the pairs are the firmer source, since they hold three directions each
 //! Fails when   pairs and planes are wrong together; the cameras and the shape are judged apart from this ([`super::judge`])
 
-use super::disagreement::{Difference, difference};
+use super::disagreement::difference;
+use super::fault::PairFault;
 use super::fit::{Fit, OwnFit, Sources, Term, own_fit};
 use super::on_planes::{share_on_planes, too_few};
 use super::plane_rows::{PlaneRows, settle_planes};
@@ -31,7 +32,7 @@ pub(super) struct Joint {
     /// What is to be said of the sources although the parts are joined.
     pub note: Option<String>,
     /// Why the parts cannot be joined.
-    pub contradiction: Option<String>,
+    pub contradiction: Option<PairFault>,
 }
 
 /// Pairs and cameras, to which planes are added.
@@ -66,7 +67,8 @@ impl Tracks<'_> {
         let apart = difference(&own.fit, &by_pairs.a_from_b);
         let is_elsewhere = apart.is_disagreement(limits) && apart.share > limits.sources.elsewhere;
         if share < limits.sources.contradicted_share * own_share || is_elsewhere {
-            return Joint { contradiction: Some(contradiction(&apart, share, own_share)), ..self.alone(None) };
+            let fault = PairFault::SourcesContradict { share, own_share, apart: apart.told() };
+            return Joint { contradiction: Some(fault), ..self.alone(None) };
         }
         let fit = self.joint_fit(planes);
         let note = self.disagreement(&own, &fit);
@@ -78,7 +80,7 @@ impl Tracks<'_> {
         if joint.contradiction.is_some() {
             return joint;
         }
-        match whole_planes(parts, &joint.fit.a_from_b, joint.fit.bend, self.limits) {
+        match whole_planes(parts, &joint.fit.a_from_b, joint.fit.bend * self.evidence.radius_a, self.limits) {
             Some(planes) => Joint { fit: self.joint_fit(&planes), ..joint },
             None => joint,
         }
@@ -111,16 +113,6 @@ impl Tracks<'_> {
             .collect();
         (!told.is_empty()).then(|| told.join("; "))
     }
-}
-
-fn contradiction(apart: &Difference, share: f64, own_share: f64) -> String {
-    format!(
-        "the point pairs and the planes of the superpixels contradict each other: where the pairs put the parts {:.0} % of the points \
-         lie on their planes, but {:.0} % do in a place that is {} away",
-        100.0 * share,
-        100.0 * own_share,
-        apart.told()
-    )
 }
 
 #[cfg(test)]
@@ -194,7 +186,7 @@ mod tests {
     #[test]
     fn two_sources_that_are_sure_of_two_places_contradict_each_other() {
         let (_, joint) = joined(0.5, &scene(NOISE, |x| *x));
-        assert!(joint.contradiction.is_some_and(|told| told.contains("contradict each other")));
+        assert!(matches!(joint.contradiction, Some(PairFault::SourcesContradict { .. })));
     }
 
     #[test]

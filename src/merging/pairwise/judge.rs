@@ -1,4 +1,4 @@
-//! Whether two parts belong together at all: tests that are independent of the estimate, each with its reason in words.
+//! Whether two parts belong together at all: tests that are independent of the estimate, each with its reason.
 //!
 //! Input        what a kind of evidence answers ([`Testimony`]), and the poses of the shared photographs
 //! Output       an [`Opinion`]
@@ -7,17 +7,20 @@
 
 use nalgebra::SymmetricEigen;
 
+use super::fault::PairFault;
 use super::fit::Fit;
-use super::track_evidence::TrackEvidence;
+use super::track_evidence::{CameraPair, TrackEvidence};
 use crate::merging::limits::{MergeLimits, PairJudgeLimits};
 
 /// What is thought of a pair of parts.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::merging) enum Opinion {
+    /// They are parts of one place, and how they stand is fixed.
     Together,
-    /// They may belong together, but how is not fixed.
-    Open(String),
-    Apart(String),
+    /// They may be, but how they stand is not fixed.
+    Open(PairFault),
+    /// They are not, for all that is known.
+    Apart(PairFault),
 }
 
 /// What a kind of evidence answers to the judge.
@@ -29,7 +32,7 @@ pub(super) trait Testimony {
     fn lacking(&self) -> Option<Opinion>;
 
     /// The similarity that it found, or why there is none.
-    fn fit(&self) -> Result<&Fit, String>;
+    fn fit(&self) -> Result<&Fit, PairFault>;
 
     /// Why it does not agree with that similarity.
     fn refused(&self, fit: &Fit) -> Option<Opinion>;
@@ -63,7 +66,7 @@ pub(super) fn judge(
     }
     let fit = match testimony.fit() {
         Ok(fit) => fit,
-        Err(reason) => return Opinion::Apart(reason),
+        Err(fault) => return Opinion::Apart(fault),
     };
     testimony
         .refused(fit)
@@ -75,61 +78,43 @@ pub(super) fn judge(
 
 fn unsound(evidence: &TrackEvidence, names: [&str; 2], limits: &PairJudgeLimits) -> Option<Opinion> {
     let [of_a, of_b] = evidence.own_error;
-    let (which, error) = if of_a >= of_b { (names[0], of_a) } else { (names[1], of_b) };
-    (error > limits.own_error_share).then(|| {
-        Opinion::Apart(format!(
-            "{which} contradicts itself: its points miss its own keypoints by {:.1} % of the photograph's width",
-            100.0 * error
-        ))
-    })
+    let (part, error_share) = if of_a >= of_b { (names[0].to_owned(), of_a) } else { (names[1].to_owned(), of_b) };
+    (error_share > limits.own_error_share).then_some(Opinion::Apart(PairFault::Unsound { part, error_share }))
 }
 
 /// Refused where the mirror image of a part explains so many times more.
 pub(super) fn mirrored(gain: f64, limits: &PairJudgeLimits) -> Option<Opinion> {
-    (gain > limits.mirror_gain)
-        .then(|| Opinion::Apart("one part is a mirror image of the other; only a reflection fits".to_owned()))
+    (gain > limits.mirror_gain).then_some(Opinion::Apart(PairFault::Mirrored))
 }
 
+/// Refused where an affine map explains what a similarity does not.
 pub(super) fn stretched(stretch: &Stretch, limits: &PairJudgeLimits) -> Option<Opinion> {
-    (stretch.ratio > limits.most_stretch && stretch.rest < limits.stretch_rest).then(|| {
-        Opinion::Apart(format!(
-            "one part is stretched by {:.0} % along one axis against the other; no similarity fits",
-            100.0 * (stretch.ratio - 1.0)
-        ))
-    })
+    let Stretch { ratio, rest } = *stretch;
+    let is_stretched = ratio > limits.most_stretch && rest < limits.stretch_rest;
+    is_stretched.then_some(Opinion::Apart(PairFault::Stretched { ratio }))
 }
 
-/// Where the nearest of the shared cameras stands, against the similarity.
-fn cameras(evidence: &TrackEvidence, fit: &Fit, holds: &str, limits: &PairJudgeLimits) -> Option<Opinion> {
-    let mut best: Option<(f64, f64)> = None;
-    for camera in &evidence.cameras {
-        let turn = (fit.a_from_b.rotation * camera.a_from_b_rotation.inverse()).angle().to_degrees();
+/// Refused where even the nearest of the shared cameras stands elsewhere than the similarity puts it.
+fn cameras(evidence: &TrackEvidence, fit: &Fit, holds: &'static str, limits: &PairJudgeLimits) -> Option<Opinion> {
+    let off = |camera: &CameraPair| {
+        let turn_deg = (fit.a_from_b.rotation * camera.a_from_b_rotation.inverse()).angle().to_degrees();
         let off = fit.a_from_b.apply(&camera.center_b) - camera.center_a;
         let allowed = limits.most_shift * evidence.radius_a.max(camera.depth_a)
             + limits.shift_focal_doubts * camera.focal_doubt * camera.depth_a;
-        let shift = off.norm() / allowed;
-        if best.is_none_or(|(t, s)| turn / limits.most_turn_deg + shift < t / limits.most_turn_deg + s) {
-            best = Some((turn, shift));
-        }
-    }
-    let (turn, shift) = best?;
-    (turn > limits.most_turn_deg || shift > 1.0).then(|| {
-        Opinion::Apart(format!(
-            "the shared photograph's two poses contradict the {holds} (turned by {turn:.1} deg, shifted by {shift:.1} \
-             times what would be allowed)"
-        ))
-    })
+        (turn_deg, off.norm() / allowed)
+    };
+    let sum = |(turn_deg, shift): &(f64, f64)| turn_deg / limits.most_turn_deg + shift;
+    let nearest = evidence.cameras.iter().map(off).min_by(|one, other| sum(one).total_cmp(&sum(other)));
+    let (turn_deg, shift) = nearest?;
+    let is_elsewhere = turn_deg > limits.most_turn_deg || shift > 1.0;
+    is_elsewhere.then_some(Opinion::Apart(PairFault::CamerasElsewhere { holds, turn_deg, shift }))
 }
 
-fn freedoms(evidence: &TrackEvidence, fit: &Fit, counted: &str, limits: &PairJudgeLimits) -> Option<Opinion> {
+/// Open where the loosest freedom is not held.
+fn freedoms(evidence: &TrackEvidence, fit: &Fit, counted: &'static str, limits: &PairJudgeLimits) -> Option<Opinion> {
     let weakest = SymmetricEigen::new(fit.information).eigenvalues.min();
-    let sigma = if weakest > 0.0 { weakest.sqrt().recip() } else { f64::INFINITY };
-    let share = sigma / evidence.radius_a;
-    (share > limits.determined).then(|| {
-        Opinion::Open(format!(
-            "{} {counted} leave one freedom open to {:.2} % of the extent (one sigma); a further shared photograph would fix it",
-            fit.inlier_count(),
-            50.0 * share.min(1e4)
-        ))
-    })
+    let sigma_a = if weakest > 0.0 { weakest.sqrt().recip() } else { f64::INFINITY };
+    let sigma = sigma_a / evidence.radius_a;
+    let inliers = fit.inlier_count();
+    (sigma > limits.determined).then_some(Opinion::Open(PairFault::FreedomOpen { inliers, counted, sigma }))
 }

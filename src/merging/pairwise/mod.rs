@@ -4,7 +4,8 @@
 //! Input        two prepared parts that share photographs
 //! Output       [`Pair`]: an edge for the report, a [`Fit`] with its information, an [`Opinion`]
 //! Method       `track_evidence`, `superpixel_planes` and `whole_planes` gather what the parts share. Point pairs, cameras and planes are
-//!              rows of one least squares (`rows`: `point_rows`, `camera_rows`, `plane_rows`; `fit`), found without a start by `track_fit` and
+//!              rows of one least squares (`rows`: `point_rows`, `camera_rows`, `plane_rows`; `fit`), found without a start
+//!              by `track_fit` and
 //!              `plane_search`, brought together by `joint`. One judge (`judge`) hears what either kind of evidence answers
 //!              (`track_testimony`, `plane_testimony`)
 //! Assumptions  a photograph of one name shows the same pixels in both parts, at whatever size
@@ -13,6 +14,7 @@
 mod camera_rows;
 mod design_effect;
 mod disagreement;
+mod fault;
 mod fit;
 mod joint;
 mod judge;
@@ -34,6 +36,7 @@ mod track_testimony;
 mod umeyama;
 mod whole_planes;
 
+pub(super) use fault::PairFault;
 #[cfg(test)]
 pub(super) use fit::Fit;
 pub(super) use fit::OwnFit;

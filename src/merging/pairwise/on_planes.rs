@@ -1,5 +1,6 @@
 //! How many points lie on their planes, whatever the sigmas say.
 
+use super::fault::PairFault;
 use super::planes::{PlaneEvidence, PlaneOf};
 use crate::geometry::Similarity;
 use crate::merging::limits::PairJudgeLimits;
@@ -22,11 +23,10 @@ pub(super) fn share_on_planes(planes: &PlaneEvidence, a_from_b: &Similarity, on_
 }
 
 /// Why the planes cannot be heard, if so.
-pub(super) fn too_few(planes: &PlaneEvidence, limits: &PairJudgeLimits) -> Option<String> {
-    let (groups, points) = (planes.groups.len(), planes.correspondences());
-    (groups < limits.fewest_planes || points < limits.fewest_on_planes).then(|| {
-        format!("the shared photographs have too few superpixels with a plane: {groups} with {points} points of the other part")
-    })
+pub(super) fn too_few(evidence: &PlaneEvidence, limits: &PairJudgeLimits) -> Option<PairFault> {
+    let (planes, points) = (evidence.groups.len(), evidence.correspondences());
+    let are_few = planes < limits.fewest_planes || points < limits.fewest_on_planes;
+    are_few.then_some(PairFault::FewPlanes { planes, points })
 }
 
 #[cfg(test)]

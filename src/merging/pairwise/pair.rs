@@ -108,7 +108,7 @@ impl Comparison<'_> {
             used: found.opinion == Opinion::Together,
             reason: match &found.opinion {
                 Opinion::Together => (!found.notes.is_empty()).then(|| found.notes.join("; ")),
-                Opinion::Open(reason) | Opinion::Apart(reason) => Some(reason.clone()),
+                Opinion::Open(fault) | Opinion::Apart(fault) => Some(fault.to_string()),
             },
         };
         Pair { edge, fit: found.fit, opinion: found.opinion }

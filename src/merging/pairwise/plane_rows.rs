@@ -1,6 +1,7 @@
 //! Points on planes as rows, both ways at once.
 //!
-//! Residual     n . x - d for a point x of one part under the pose and the plane (n, d) of the other; its variance is the point's own, across
+//! Residual     n . x - d for a point x of one part under the pose and the plane (n, d) of the other; its variance is the
+//!              point's own, across
 //!              the plane, and that of the plane's place there, with the squared bend
 //! Weights      Tukey's (Beaton and Tukey 1974). n points of one plane share the plane's error and the bend: as rows of variance v with a
 //!              common variance c they weigh together as sum(1 / v) / (1 + c sum(1 / v)), which stays below 1 / c. All planes together
@@ -179,10 +180,6 @@ impl Source for PlaneRows<'_> {
 
     fn median_size(&self) -> f64 {
         MEDIAN_SIZE
-    }
-
-    fn bend_unit(&self) -> f64 {
-        1.0
     }
 
     fn bend(&self) -> f64 {

@@ -17,13 +17,11 @@ use crate::geometry::{Point3, Similarity};
 use crate::merging::extent::median_point;
 use crate::merging::limits::MergeLimits;
 use crate::merging::point_covariance::KnownPoint;
-use crate::robust::{Problem, Random, RansacOptions, ransac};
+use crate::robust::{Motion, Problem, Random, RansacOptions, ransac};
 use crate::solvers::{Row, SIMILARITY, Sought, solve_minimal};
 
 /// Looks for a group with enough points.
 const TRIES: usize = 20;
-/// Seven unknowns need seven rows.
-const UNKNOWNS: usize = 7;
 
 /// The pose that the planes agree on best, and their answer about it.
 pub(super) fn fit_planes(planes: &PlaneEvidence, limits: &MergeLimits, seed: u64) -> Option<OwnFit> {
@@ -33,7 +31,7 @@ pub(super) fn fit_planes(planes: &PlaneEvidence, limits: &MergeLimits, seed: u64
 
 struct Search<'a> {
     rows: PlaneRows<'a>,
-    /// By the side that has the planes.
+    /// The groups whose planes a has, and those whose planes b has.
     sides: [Vec<&'a PlaneGroup>; 2],
     /// Groups that rank hypotheses, and which of their points: one in so many.
     scored: Vec<(&'a PlaneGroup, usize)>,
@@ -72,7 +70,11 @@ fn search(planes: &PlaneEvidence, limits: &MergeLimits, seed: u64) -> Option<Sim
 /// The groups of one side, where they have enough points for a sample.
 fn side(planes: &PlaneEvidence, of: PlaneOf) -> Vec<&PlaneGroup> {
     let groups: Vec<&PlaneGroup> = planes.groups.iter().filter(|g| g.plane_of == of).collect();
-    if groups.iter().map(|g| g.points.len()).sum::<usize>() < UNKNOWNS { Vec::new() } else { groups }
+    if groups.iter().map(|g| g.points.len()).sum::<usize>() < Motion::Similarity.unknowns() {
+        Vec::new()
+    } else {
+        groups
+    }
 }
 
 fn center_of_b(planes: &PlaneEvidence) -> Point3<f64> {
@@ -112,7 +114,7 @@ impl Search<'_> {
     fn sample(&self, side: usize, configuration: &[usize], random: &mut Random) -> Option<Vec<Row>> {
         let groups = &self.sides[side];
         let mut used = Vec::with_capacity(configuration.len());
-        let mut rows = Vec::with_capacity(UNKNOWNS);
+        let mut rows = Vec::with_capacity(configuration.iter().sum());
         for &wanted in configuration {
             let fits = |g: &usize| groups[*g].points.len() >= wanted && !used.contains(g);
             let picked = (0..TRIES).map(|_| random.below(groups.len())).find(fits)?;

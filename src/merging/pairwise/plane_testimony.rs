@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::fault::PairFault;
 use super::fit::{Fit, OwnFit};
 use super::judge::{Opinion, Stretch, Testimony, Words, mirrored};
 use super::on_planes::{share_on_planes, too_few};
@@ -24,16 +25,14 @@ impl Testimony for PlaneTestimony<'_> {
     }
 
     fn lacking(&self) -> Option<Opinion> {
-        let nothing = "no superpixel of the shared photographs has a plane in one part and points in the other";
         match self.planes {
-            None => Some(Opinion::Open(nothing.to_owned())),
+            None => Some(Opinion::Open(PairFault::NoSuperpixels)),
             Some(planes) => too_few(planes, &self.limits.judge).map(Opinion::Open),
         }
     }
 
-    fn fit(&self) -> Result<&Fit, String> {
-        let nothing = "no similarity lays the points of one part on the planes of the other";
-        self.found.map(|found| &found.fit).ok_or_else(|| nothing.to_owned())
+    fn fit(&self) -> Result<&Fit, PairFault> {
+        self.found.map(|found| &found.fit).ok_or(PairFault::NoSimilarityOfPlanes)
     }
 
     /// Points lie on their planes, better than in the mirror and better than chance.
@@ -43,15 +42,9 @@ impl Testimony for PlaneTestimony<'_> {
         if let Some(opinion) = mirrored(self.best_share(&planes.mirrored()) / share, limits) {
             return Some(opinion);
         }
-        let chance = self.best_share(&planes.shuffled());
-        (share < limits.agreeing_share || share < limits.chance_factor * chance).then(|| {
-            Opinion::Apart(format!(
-                "only {:.0} % of the points lie on the planes of their superpixels ({:.0} % on those of other superpixels); the \
-                 photographs may be different ones with the same name",
-                100.0 * share,
-                100.0 * chance
-            ))
-        })
+        let by_chance = self.best_share(&planes.shuffled());
+        let is_chance = share < limits.agreeing_share || share < limits.chance_factor * by_chance;
+        is_chance.then_some(Opinion::Apart(PairFault::FewPointsOnPlanes { share, by_chance }))
     }
 
     /// The affine map x + M y + t, y = (x - c) / rho, that lays the points best on their planes.
@@ -122,18 +115,21 @@ mod tests {
     #[test]
     fn a_mirrored_part_is_refused() {
         let told = opinion(&scene(0.003, |x| Point3::new(-x.x, x.y, x.z)));
-        assert!(matches!(&told, Some(Opinion::Apart(reason)) if reason.contains("mirror")), "{told:?}");
+        assert!(matches!(&told, Some(Opinion::Apart(PairFault::Mirrored))), "{told:?}");
     }
 
     #[test]
     fn a_stretched_part_is_refused() {
         let told = opinion(&scene(0.003, |x| Point3::new(x.x, x.y, 1.12 * x.z)));
-        assert!(matches!(&told, Some(Opinion::Apart(reason)) if reason.contains("stretched")), "{told:?}");
+        assert!(
+            matches!(&told, Some(Opinion::Apart(PairFault::Stretched { ratio })) if (1.06..1.2).contains(ratio)),
+            "{told:?}"
+        );
     }
 
     #[test]
     fn superpixels_of_another_photograph_are_refused() {
         let told = opinion(&scene(0.003, |x| *x).shuffled());
-        assert!(matches!(&told, Some(Opinion::Apart(reason)) if reason.contains("lie on the planes")), "{told:?}");
+        assert!(matches!(&told, Some(Opinion::Apart(PairFault::FewPointsOnPlanes { .. }))), "{told:?}");
     }
 }

@@ -17,9 +17,9 @@ pub(super) const MEDIAN_NORM: f64 = 1.538;
 #[derive(Clone, Copy)]
 pub(super) struct PointRows<'a> {
     pub pairs: &'a [PointPair],
-    /// Of a, its units.
+    /// Radius of a, in its units.
     pub radius: f64,
-    /// A's units.
+    /// A share of the radius.
     pub bend: f64,
     pub limits: &'a FitLimits,
 }
@@ -27,17 +27,18 @@ pub(super) struct PointRows<'a> {
 impl<'a> PointRows<'a> {
     /// With the bend that is taken before anything is known.
     pub fn new(pairs: &'a [PointPair], radius: f64, limits: &'a FitLimits) -> PointRows<'a> {
-        PointRows { pairs, radius, bend: limits.first_bend * radius, limits }
+        PointRows { pairs, radius, bend: limits.first_bend, limits }
     }
 
     /// Lower Cholesky factor of a residual's information, transposed: rows whiten.
     fn whitening(&self, pair: &PointPair, a_from_b: &Similarity) -> Matrix3<f64> {
         let turn = a_from_b.rotation.matrix() * a_from_b.scale;
-        let bend_sq = self.bend * self.bend;
+        let bend = self.bend * self.radius;
+        let bend_sq = bend * bend;
         let covariance =
             pair.covariance_a + turn * pair.covariance_b * turn.transpose() + Matrix3::identity() * bend_sq;
         let information = covariance.try_inverse().unwrap_or_else(|| Matrix3::identity() / bend_sq);
-        information.cholesky().map_or_else(|| Matrix3::identity() / self.bend, |c| c.l().transpose())
+        information.cholesky().map_or_else(|| Matrix3::identity() / bend, |c| c.l().transpose())
     }
 
     pub fn whitened(&self, pair: &PointPair, a_from_b: &Similarity) -> Vector3<f64> {
@@ -104,10 +105,6 @@ impl Source for PointRows<'_> {
 
     fn median_size(&self) -> f64 {
         MEDIAN_NORM
-    }
-
-    fn bend_unit(&self) -> f64 {
-        self.radius
     }
 
     fn bend(&self) -> f64 {

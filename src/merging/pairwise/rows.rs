@@ -29,9 +29,7 @@ pub(super) trait Source: Rows {
     /// Median size of a whitened residual.
     fn median_size(&self) -> f64;
 
-    /// The bend's unit, a's units where it is a length, one where it is a share of each part's radius.
-    fn bend_unit(&self) -> f64;
-
+    /// Share of a part's radius.
     fn bend(&self) -> f64;
 
     fn set_bend(&mut self, bend: f64);

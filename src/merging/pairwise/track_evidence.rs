@@ -6,7 +6,7 @@ use crate::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 use crate::merging::limits::MergeLimits;
 use crate::merging::point_covariance::focal_px;
 use crate::merging::prepared::PreparedPart;
-use crate::merging::shared_photos::{Overlay, SharedPhoto};
+use crate::merging::shared_photos::{PixelMap, SharedPhoto};
 use crate::reconstruction::{ImageIndex, Observation, PointIndex, Reconstruction};
 use crate::robust::median;
 
@@ -66,9 +66,9 @@ pub(super) fn shared_tracks(
     let sfms = [a.sfm(), b.sfm()];
     let (mut couples, mut cameras, mut chance) = (BTreeSet::new(), Vec::new(), 0.0);
     for photo in &photos {
-        let overlay = Overlay::of(sfms, [photo.in_a, photo.in_b], &limits.keypoints);
-        let matches = matches(sfms, photo, &overlay);
-        chance += chance_matches(sfms, photo, &overlay);
+        let pixels = PixelMap::of(sfms, [photo.in_a, photo.in_b], &limits.keypoints);
+        let matches = matches(sfms, photo, &pixels);
+        chance += chance_matches(sfms, photo, &pixels);
         cameras.push(camera_pair(sfms, photo, &matches));
         couples.extend(matches);
     }
@@ -94,16 +94,16 @@ fn has_point(o: &Observation) -> bool {
     o.point.is_some()
 }
 
-fn matches([a, b]: [&Reconstruction; 2], photo: &SharedPhoto, overlay: &Overlay) -> Vec<Match> {
+fn matches([a, b]: [&Reconstruction; 2], photo: &SharedPhoto, pixels: &PixelMap) -> Vec<Match> {
     let in_a = &a.images[photo.in_a.0 as usize].observations;
     let in_b = &b.images[photo.in_b.0 as usize].observations;
-    let found = overlay.same_keypoints(in_a, in_b, &has_point).into_iter();
+    let found = pixels.same_keypoints(in_a, in_b, &has_point).into_iter();
     found.filter_map(|(i, j)| Some((in_a[i as usize].point?, in_b[j as usize].point?))).collect()
 }
 
 /// Mean number of coincidences where one photograph is shifted over the other.
-fn chance_matches(sfms: [&Reconstruction; 2], photo: &SharedPhoto, overlay: &Overlay) -> f64 {
-    let shifted = |by: &[f64; 2]| Overlay { shift: by.map(|v| v * overlay.tolerance), ..*overlay };
+fn chance_matches(sfms: [&Reconstruction; 2], photo: &SharedPhoto, pixels: &PixelMap) -> f64 {
+    let shifted = |by: &[f64; 2]| PixelMap { shift: by.map(|v| v * pixels.tolerance), ..*pixels };
     let found: usize = CHANCE_SHIFTS.iter().map(|by| matches(sfms, photo, &shifted(by)).len()).sum();
     found as f64 / CHANCE_SHIFTS.len() as f64
 }

@@ -50,7 +50,7 @@ pub(super) fn fit_tracks(evidence: &TrackEvidence, limits: &MergeLimits, seed: u
 
 fn cameras_among<'a>(evidence: &'a TrackEvidence, used: &[bool], bend: f64, limits: &'a FitLimits) -> CameraRows<'a> {
     let cameras = evidence.cameras.iter().zip(used).filter(|(_, used)| **used).map(|(camera, _)| camera).collect();
-    CameraRows { cameras, bend, limits: &limits.cameras }
+    CameraRows { cameras, bend: bend * evidence.radius_a, limits: &limits.cameras }
 }
 
 /// How much of the pairs the best similarity explains; for comparing with a mirrored part.

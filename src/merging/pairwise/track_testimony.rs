@@ -1,5 +1,6 @@
 //! What point pairs answer to the judge.
 
+use super::fault::PairFault;
 use super::fit::Fit;
 use super::judge::{Opinion, Stretch, Testimony, Words, mirrored};
 use super::point_rows::PointRows;
@@ -24,37 +25,31 @@ impl Testimony for TrackTestimony<'_> {
     fn lacking(&self) -> Option<Opinion> {
         let limits = &self.limits.judge;
         let TrackEvidence { chance, fewer_keypoints, ref pairs, ref photos, .. } = *self.evidence;
-        let (count, photos) = (pairs.len(), photos.len());
+        let (pairs, photos) = (pairs.len(), photos.len());
         let needed = (limits.chance_factor * chance).max(chance + limits.chance_sigmas * chance.sqrt());
-        (count as f64 <= needed || count < limits.fewest_pairs).then(|| {
-            Opinion::Apart(format!(
-                "the {photos} photographs of one name show different keypoints: {count} of {fewer_keypoints} coincide, chance \
-                 gives {chance:.0}; they may be different photographs with the same name"
-            ))
-        })
+        let is_chance = pairs as f64 <= needed || pairs < limits.fewest_pairs;
+        let fault = PairFault::OtherPhotographs { photos, pairs, keypoints: fewer_keypoints, chance };
+        is_chance.then_some(Opinion::Apart(fault))
     }
 
-    fn fit(&self) -> Result<&Fit, String> {
-        self.fit.ok_or_else(|| format!("no similarity explains {} point pairs", self.evidence.pairs.len()))
+    fn fit(&self) -> Result<&Fit, PairFault> {
+        self.fit.ok_or(PairFault::NoSimilarityOfPairs { pairs: self.evidence.pairs.len() })
     }
 
     fn refused(&self, fit: &Fit) -> Option<Opinion> {
         let limits = &self.limits.judge;
         let (pairs, inliers) = (self.evidence.pairs.len(), fit.inlier_count());
         if (inliers as f64) < limits.agreeing_share * pairs as f64 || inliers < limits.fewest_pairs {
-            return Some(Opinion::Apart(format!("only {inliers} of {pairs} point pairs agree with one similarity")));
+            return Some(Opinion::Apart(PairFault::FewPairsAgree { inliers, pairs }));
         }
-        let bend = fit.bend / self.evidence.radius_a;
-        if bend > limits.most_bend {
-            return Some(Opinion::Apart(format!(
-                "the point pairs disagree by {:.2} % of the extent, more than parts of one place do",
-                50.0 * bend
-            )));
+        if fit.bend > limits.most_bend {
+            return Some(Opinion::Apart(PairFault::Bent { bend: fit.bend }));
         }
         mirrored(self.mirror_gain(fit), limits)
     }
 
-    /// Of the inliers alone. Directions in which the pairs do not spread say nothing of stretch: they are held at that of the similarity.
+    /// The affine map of the inliers alone. Directions in which the pairs do not spread say nothing of stretch: they are
+    /// held at that of the similarity.
     fn stretch(&self, fit: &Fit) -> Option<Stretch> {
         let inliers: Vec<&PointPair> =
             self.evidence.pairs.iter().zip(&fit.inliers).filter(|(_, i)| **i).map(|(p, _)| p).collect();

@@ -3,7 +3,9 @@
 //! In axes (a, b, m) of the sensor and (c, e, n) of the object, both with the known axis as third, such a rotation is
 //! R = Rot_z(theta) diag(1, sigma, sigma) with R m = sigma n, sigma = +-1. With y = coordinates of p and v = coordinates of a normal
 //!
-//!     normal . R p = cos (v_x y_x + sigma v_y y_y) + sin (v_y y_x - sigma v_x y_y) + sigma v_z y_z,
+//! ```text
+//! normal . R p = cos (v_x y_x + sigma v_y y_y) + sin (v_y y_x - sigma v_x y_y) + sigma v_z y_z,
+//! ```
 //!
 //! so that an equation of the rotation is a line, and (cos, sin) a point of the unit circle on it (mathematics.md 4.1).
 

@@ -4,7 +4,9 @@
 //! (turn.rs). The first plane gives the height of X, the image of p_1, over itself: n1 . X = -d1. With X = (u, w, -d1) in the
 //! plane's axes each further row reads, y taken from p_1,
 //!
-//!     v_x u + v_y w + delta + s (v . R y) = 0,   delta = d - v_z d1.
+//! ```text
+//! v_x u + v_y w + delta + s (v . R y) = 0,   delta = d - v_z d1.
+//! ```
 
 use crate::geometry::{Axes, Vector3};
 use crate::solvers::algebra::tolerance::RANK_TOLERANCE;

@@ -5,9 +5,10 @@
 use std::error::Error;
 use std::path::Path;
 
+use cityweld::steps::{CityCounts, InputSummary, SfmCounts};
 use cityweld::{
-    AlignOptions, CityCounts, CityOptions, InputSummary, PreparedCity, SfmCounts, SuperpixelOptions, SuperpixelSource,
-    align, lift_superpixels, read_city, read_reconstruction, read_start, write_alignment,
+    AlignOptions, CityOptions, PreparedCity, SuperpixelOptions, SuperpixelSource, align, lift_superpixels, read_city,
+    read_reconstruction, read_start, write_alignment,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -7,9 +7,10 @@ use std::error::Error;
 use std::ops::Range;
 use std::path::Path;
 
+use cityweld::types::{ImageIndex, PointIndex};
 use cityweld::{
-    ImageIndex, MergeOptions, MergePart, PointIndex, Reconstruction, Rotation3, Similarity, SuperpixelSource, Vector3,
-    merge, read_reconstruction, write_merge,
+    MergeOptions, MergePart, Reconstruction, Rotation3, Similarity, SuperpixelSource, Vector3, merge,
+    read_reconstruction, write_merge,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -13,9 +13,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use cityweld::internals::{CityPlanes, PlaneId, city_planes};
+use cityweld::steps::{LabelMap, Labels, cut_superpixels};
+use cityweld::types::FacetId;
 use cityweld::{
-    CityModel, CityOptions, FacetId, Image, LabelMap, Labels, Matrix3, Point3, Reconstruction, Similarity,
-    SuperpixelOptions, Vector3, cut_superpixels, read_city, read_reconstruction,
+    CityModel, CityOptions, Image, Matrix3, Point3, Reconstruction, Similarity, SuperpixelOptions, Vector3, read_city,
+    read_reconstruction,
 };
 use rayon::prelude::*;
 use serde_json::Value;

@@ -12,11 +12,11 @@
 //! | To | use |
 //! |---|---|
 //! | set a reconstruction into a city | [`align()`], [`AlignOptions`], [`Up`]; what comes back: [`Alignment`] |
-//! | know how sure it is | [`Verdict`], [`Certainty`], [`Freedom`], [`Alternative`], [`ModelErrors`], [`Support`] |
+//! | know how sure it is | [`Verdict`], [`Certainty`], [`Freedom`], [`Alternative`], [`types::ModelErrors`] |
 //! | read a city model | [`read_city`], [`CityOptions`], [`CityModel`], [`PreparedCity`] |
 //! | read a reconstruction and a start | [`read_reconstruction`], [`Reconstruction`], [`read_start`], [`Start`] |
 //! | use label images or photographs | [`lift_superpixels`], [`SuperpixelSource`], [`SuperpixelOptions`] |
-//! | join reconstructions | [`merge()`], [`MergePart`], [`MergeOptions`]; with places known already [`join`]; what comes back: [`Merge`] |
+//! | join reconstructions | [`merge()`], [`MergePart`], [`MergeOptions`]; with places known already [`steps::join`]; what comes back: [`Merge`] |
 //! | write results | [`write_alignment`], [`write_merge`], [`write_colmap`], [`write_ply`], [`output`] |
 //! | solve point-to-plane problems of one's own | [`solvers`] |
 //! | make scenes with known truth | [`synthetic`] |
@@ -56,42 +56,49 @@ pub mod cli;
 pub use align::{AlignOptions, Up, align};
 pub use error::Error;
 pub use observer::{Cancelled, Observer, Stage};
-pub use verdict::{
-    Alignment, Alternative, Certainty, Freedom, FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary,
-    Support, Verdict,
-};
+pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
 // City, reconstruction, start.
-pub use city::{
-    CityDefect, CityError, CityModel, CityOptions, CityPlace, CityUp, CityWarning, Facet, FacetId, ObjectId, read_city,
-};
+pub use city::{CityModel, CityOptions, CityUp, Facet, read_city};
 pub use format::read_start;
-pub use geometry::{Start, StartError, StartSigmas};
+pub use geometry::{Start, StartSigmas};
 pub use planes::PreparedCity;
-pub use reconstruction::{
-    CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, ReconstructionError, read_reconstruction,
-};
+pub use reconstruction::{Image, Observation, Reconstruction, read_reconstruction};
 
 // Label images and photographs.
-pub use imagery::{
-    ImageryError, LabelMap, Labels, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, cut_superpixels,
-    lift_superpixels, lift_superpixels_of,
-};
+pub use imagery::{LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels};
 
 // Merging.
-pub use merge::{MergeError, MergeOptions, MergePart, merge};
-pub use merging::{
-    Account, Anchor, DropReason, Edge, EdgeSource, EvidenceChoice, Fused, JoinOptions, Ledger, Merge, MergeVerdict,
-    MergedFrame, Part, PartPlace, PartSupport, join,
-};
+pub use merge::{MergeOptions, MergePart, merge};
+pub use merging::{Merge, MergeVerdict};
 
 // Results as files.
 pub use export::colmap::write_colmap;
 pub use export::ply::write_ply;
-pub use export::{CityCounts, InputSummary, SfmCounts, alignment_report, merge_report, write_alignment, write_merge};
+pub use export::{write_alignment, write_merge};
 
-// Geometry and least squares.
-pub use geometry::{Camera, CameraModel, Matrix3, Point3, Rotation3, Similarity, Vector3};
+// Geometry.
+pub use geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
+
+/// What the models and results are made of, and the errors of single functions.
+pub mod types {
+    pub use crate::city::{CityDefect, CityError, CityPlace, CityWarning, FacetId, ObjectId};
+    pub use crate::geometry::{Camera, CameraModel, StartError};
+    pub use crate::imagery::ImageryError;
+    pub use crate::merge::MergeError;
+    pub use crate::merging::{
+        Account, Anchor, DropReason, Edge, EdgeSource, Fused, Ledger, MergedFrame, PartPlace, PartSupport,
+    };
+    pub use crate::reconstruction::{CameraIndex, ImageIndex, PointIndex, ReconstructionError};
+    pub use crate::verdict::{FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary, Support};
+}
+
+/// Single steps, for programs that put their own together: superpixels of chosen images, parts whose places are known, reports as text.
+pub mod steps {
+    pub use crate::export::{CityCounts, InputSummary, SfmCounts, alignment_report, merge_report};
+    pub use crate::imagery::{LabelMap, Labels, cut_superpixels, lift_superpixels_of};
+    pub use crate::merging::{EvidenceChoice, JoinOptions, Part, join};
+}
 
 /// Folders of results as the program writes them: OUT appears whole or not at all; what a city's planes look like; an earlier alignment
 /// written again.

@@ -348,8 +348,8 @@ fn the_covariance_is_about_the_centre_of_the_scene_and_holds_the_sigmas_of_the_f
         let in_metres = nalgebra::SMatrix::<f64, 7, 7>::from_fn(|i, j| alignment.covariance[i][j] * unit[i] * unit[j]);
         let mut of_covariance: Vec<f64> = in_metres.symmetric_eigenvalues().iter().map(|v| v.max(0.0).sqrt()).collect();
         let in_metres = |f: &cityweld::Freedom| match f.unit {
-            cityweld::FreedomUnit::Metre => f.sigma,
-            cityweld::FreedomUnit::Degree => f.sigma.to_radians() * r,
+            cityweld::types::FreedomUnit::Metre => f.sigma,
+            cityweld::types::FreedomUnit::Degree => f.sigma.to_radians() * r,
             _ => f.sigma * r,
         };
         let mut of_freedoms: Vec<f64> = alignment.freedoms.iter().map(in_metres).collect();

@@ -5,7 +5,8 @@ mod needs;
 use std::path::{Path, PathBuf};
 
 use cityweld::synthetic::Block;
-use cityweld::{CityDefect, CityError, CityModel, CityOptions, CityUp, Point3, Vector3, read_city};
+use cityweld::types::{CityDefect, CityError};
+use cityweld::{CityModel, CityOptions, CityUp, Point3, Vector3, read_city};
 use needs::shared;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

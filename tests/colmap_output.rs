@@ -5,10 +5,8 @@ mod pieces;
 
 use std::path::Path;
 
-use cityweld::{
-    JoinOptions, MergeVerdict, Part, Rotation3, Similarity, Vector3, join, read_reconstruction, read_start,
-    write_colmap,
-};
+use cityweld::steps::{JoinOptions, Part, join};
+use cityweld::{MergeVerdict, Rotation3, Similarity, Vector3, read_reconstruction, read_start, write_colmap};
 use needs::pycolmap;
 use pieces::piece;
 

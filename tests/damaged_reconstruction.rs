@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cityweld::internals::{Encoding, WarningKind};
-use cityweld::{PointIndex, Reconstruction, read_reconstruction, write_colmap, write_ply};
+use cityweld::types::PointIndex;
+use cityweld::{Reconstruction, read_reconstruction, write_colmap, write_ply};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use cityweld::types::{Camera, CameraModel, ImageryError, PointIndex};
 use cityweld::{
-    Camera, CameraModel, Image, ImageryError, LiftedSuperpixels, Observation, PointIndex, Reconstruction,
-    SuperpixelOptions, SuperpixelSource, lift_superpixels,
+    Image, LiftedSuperpixels, Observation, Reconstruction, SuperpixelOptions, SuperpixelSource, lift_superpixels,
 };
 
 /// A model of one image `name` of a camera of that size.

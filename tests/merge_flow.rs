@@ -8,9 +8,10 @@ use std::path::Path;
 use std::process::Command;
 
 use cityweld::internals::{Chart, Matrix7};
+use cityweld::steps::{JoinOptions, Part, join, merge_report};
+use cityweld::types::{Anchor, Camera, CameraIndex, CameraModel, ImageIndex, PointIndex, Support};
 use cityweld::{
-    Anchor, Camera, CameraIndex, CameraModel, Freedom, Image, ImageIndex, JoinOptions, MergeVerdict, Observation, Part,
-    Point3, PointIndex, Reconstruction, Rotation3, Similarity, Support, Vector3, Verdict, join, merge_report,
+    Freedom, Image, MergeVerdict, Observation, Point3, Reconstruction, Rotation3, Similarity, Vector3, Verdict,
     read_reconstruction, write_colmap,
 };
 use json_schema::keeps;
@@ -228,8 +229,8 @@ fn anchor(world_from_part: Similarity, verdict: Verdict) -> Anchor {
         name: "along up".into(),
         direction: Vector3::z(),
         sigma: 3.0,
-        kind: cityweld::FreedomKind::Shift,
-        unit: cityweld::FreedomUnit::Metre,
+        kind: cityweld::types::FreedomKind::Shift,
+        unit: cityweld::types::FreedomUnit::Metre,
         determined: verdict == Verdict::Aligned,
         given: false,
     };

@@ -6,9 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cityweld::synthetic::{Block, CloudOptions};
-use cityweld::{
-    Point3, PointIndex, Reconstruction, Rotation3, Similarity, Vector3, read_reconstruction, write_colmap, write_ply,
-};
+use cityweld::types::PointIndex;
+use cityweld::{Point3, Reconstruction, Rotation3, Similarity, Vector3, read_reconstruction, write_colmap, write_ply};
 use needs::{pycolmap, shared};
 
 fn subfolders(folder: &Path) -> Vec<PathBuf> {

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use cityweld::solvers::scene::Chance;
 use cityweld::synthetic::{Block, CaptureOptions, Ring};
+use cityweld::types::{ImageIndex, PointIndex};
 use cityweld::{
-    Image, ImageIndex, Matrix3, Point3, PointIndex, Reconstruction, Rotation3, Similarity, Vector3,
-    read_reconstruction, write_colmap,
+    Image, Matrix3, Point3, Reconstruction, Rotation3, Similarity, Vector3, read_reconstruction, write_colmap,
 };
 use serde_json::Value;
 

@@ -5,7 +5,7 @@ use crate::export::{ExportError, OutputError, ReportError};
 use crate::format::PlacementError;
 use crate::geometry::StartError;
 use crate::imagery::ImageryError;
-use crate::merge::MergeError;
+use crate::merging::MergeError;
 use crate::observer::Cancelled;
 use crate::reconstruction::ReconstructionError;
 

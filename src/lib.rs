@@ -1,4 +1,4 @@
-//! cityweld sets structure-from-motion (SfM) reconstructions into polyhedral city models, and onto each other.
+//! cityweld registers structure-from-motion (SfM) reconstructions to polyhedral city models, and to each other.
 //!
 //! ```text
 //! city files ──► read_city ──► CityModel ──► PreparedCity ──┐
@@ -18,7 +18,10 @@
 //! | use label images or photographs | [`lift_superpixels`], [`SuperpixelSource`], [`SuperpixelOptions`] |
 //! | join reconstructions | [`merge()`], [`MergePart`], [`MergeOptions`]; with places known already [`steps::join`]; what comes back: [`Merge`] |
 //! | write results | [`write_alignment`], [`write_merge`], [`write_colmap`], [`write_ply`], [`output`] |
+//! | follow long work, or end it | [`Observer`], [`Stage`], [`Cancelled`] |
+//! | hold every error in one type | [`Error`] |
 //! | solve point-to-plane problems of one's own | [`solvers`] |
+//! | answer the `solve` command's JSON | [`problem`] |
 //! | make scenes with known truth | [`synthetic`] |
 //!
 //! Frames stand in names: `city_from_sfm` takes coordinates of the reconstruction to those of the city. Lengths are metres of the
@@ -82,14 +85,20 @@ pub use geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 
 /// What the models and results are made of, and the errors of single functions.
 pub mod types {
-    pub use crate::city::{CityDefect, CityError, CityPlace, CityWarning, FacetId, ObjectId};
+    pub use crate::city::{CityDefect, CityError, CityPlace, CityRole, CitySource, CityWarning, FacetId, ObjectId};
+    pub use crate::export::{ExportError, OutputError, ReportError};
+    pub use crate::format::PlacementError;
     pub use crate::geometry::{Camera, CameraModel, StartError};
-    pub use crate::imagery::ImageryError;
-    pub use crate::merge::MergeError;
+    pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};
     pub use crate::merging::{
-        Account, Anchor, DropReason, Edge, EdgeSource, Fused, Ledger, MergedFrame, PartPlace, PartSupport,
+        Account, Anchor, DropReason, Edge, EdgeSource, Fused, Ledger, MergeError, MergedFrame, PartPlace, PartSupport,
+        Unbalanced,
     };
-    pub use crate::reconstruction::{CameraIndex, ImageIndex, PointIndex, ReconstructionError};
+    pub use crate::planes::CityPlanes;
+    pub use crate::reconstruction::{
+        CameraIndex, ColmapParts, ImageIndex, PointIndex, ReconstructionError, ReconstructionWarning, WarningKind,
+    };
+    pub use crate::robust::{Chart, Matrix7};
     pub use crate::verdict::{FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary, Support};
 }
 

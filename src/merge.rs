@@ -18,8 +18,8 @@ use crate::imagery::{
     lift_superpixels_of,
 };
 use crate::limits::Limits;
-use crate::merging::{Anchor, JoinOptions, Merge, Part, Unbalanced, join};
-use crate::observer::{Cancelled, Observer};
+use crate::merging::{Anchor, JoinOptions, Merge, MergeError, Part, join};
+use crate::observer::Observer;
 use crate::planes::PreparedCity;
 use crate::reconstruction::{Image, Reconstruction};
 
@@ -39,18 +39,6 @@ pub struct MergeOptions {
     /// Where superpixels come from; without them points alone join the parts.
     pub superpixels: Option<SuperpixelSource>,
     pub join: JoinOptions,
-}
-
-/// Why parts could not be joined; what does not belong together is no error but a verdict.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MergeError {
-    #[error(transparent)]
-    Imagery(#[from] ImageryError),
-    #[error(transparent)]
-    Unbalanced(#[from] Unbalanced),
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
 }
 
 /// Joins reconstructions, in the city where one is given.

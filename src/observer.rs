@@ -14,7 +14,8 @@ pub trait Observer: Sync {
         let _ = text;
     }
 
-    /// Whether the work should end; it then ends soon, with [`Cancelled`].
+    /// Whether the work should end; it then ends with [`Cancelled`]. Asked between stages, after each round of samples, before each
+    /// photograph and between pairs of parts.
     fn is_cancelled(&self) -> bool {
         false
     }

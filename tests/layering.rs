@@ -55,7 +55,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("merge", &["limits", "observer", "geometry", "imagery", "reconstruction", "planes", "merging", "align"]),
-    ("error", &["observer", "geometry", "format", "city", "reconstruction", "imagery", "merge", "export"]),
+    ("error", &["observer", "geometry", "format", "city", "reconstruction", "imagery", "merging", "export"]),
     // Parses, reads, writes and prints: it neither searches nor estimates.
     (
         "cli",

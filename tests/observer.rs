@@ -3,7 +3,9 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use cityweld::steps::{JoinOptions, Part, join};
 use cityweld::synthetic::{Block, CloudOptions, Offset, Survey, sfm_from_city};
+use cityweld::types::MergeError;
 use cityweld::{AlignOptions, Alignment, Cancelled, Error, Observer, PreparedCity, Stage, Start, Up, Verdict, align};
 
 fn block() -> Block {
@@ -93,4 +95,13 @@ fn there_is_a_transform_only_where_the_verdict_is_aligned() {
     let start = Start::with_default_sigmas(block().off(&far) * sfm_from_city().inverse());
     let failed = run(start, &()).unwrap();
     assert_eq!((failed.verdict, failed.transform()), (Verdict::Failed, None));
+}
+
+#[test]
+fn joining_ends_when_an_observer_asks_for_it() {
+    let part = |name: &str| Part { name: name.to_owned(), sfm: survey().sfm, superpixels: None, anchor: None };
+    let watch = Watch { end_at: Some(Stage::ComparingParts), ..Watch::default() };
+    let error = join(&[part("one"), part("other")], &JoinOptions::default(), &watch).unwrap_err();
+    assert!(matches!(error, MergeError::Cancelled(_)), "{error}");
+    assert_eq!(watch.stages(), [Stage::ComparingParts]);
 }

@@ -19,8 +19,8 @@ pub(super) struct Gathered {
     pub findings: SystematicErrors,
 }
 
-/// All poses that may be right, each with its evidence: the best first, then by what evidence and start say together. The search's
-/// order holds, whose gates are the narrower, unless the evidence for another of its poses is sure.
+/// Candidates and sharpened null poses with their evidence, the best first, then by evidence and start together. The search's best stays
+/// first unless another of its poses leads it by more than log2 of one over the false alarms.
 pub(super) fn heard(contest: &CandidateEvaluation, scene: &Scene, candidates: &[Candidate]) -> Vec<EvaluatedCandidate> {
     let of_search = |candidate: &Candidate| EvaluatedCandidate {
         weighed: contest.weigh(&candidate.refined.city_from_level),
@@ -82,7 +82,7 @@ fn rivals(refiner: &PoseRefiner, contestants: &[EvaluatedCandidate], best: &Simi
     std::iter::once(rival(refiner, first, best)).chain(others).collect()
 }
 
-/// A plane speaks for a pose from so many bits on. Chosen: what chance gives to two in three.
+/// Least evidence for a plane to be counted as supporting a pose, bits. Chosen: what chance gives to two in three.
 const SPEAKS_BITS: f64 = 0.5;
 
 fn hold(

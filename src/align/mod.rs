@@ -1,4 +1,5 @@
-//! The main job on one page: patches, up, scene, search, refinement, evidence, verdict.
+//! Aligns one reconstruction to a city: `task` is the whole job, `obstacle` why none is possible, `evidence` what the verdict reads, `report` the
+//! result.
 
 mod evidence;
 mod obstacle;

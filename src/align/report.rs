@@ -10,7 +10,7 @@ use crate::planes::{Patches, PreparedCity, UpCandidate};
 use crate::uncertainty::SystematicErrors;
 use crate::verdict::{Alignment, Certainty, ModelErrors, PlaneSupport, SearchSummary, Support, Verdict, freedoms};
 
-/// The alignment that an outcome makes.
+/// Builds the [`Alignment`] from an outcome.
 pub(super) fn tell(
     outcome: Outcome,
     patches: &Patches,

@@ -1,4 +1,4 @@
-//! The main job on one page: patches, up, scene, search, refinement, evidence, verdict.
+//! The main job on one page: patches, up, scene, search, candidates, evidence, estimate, verdict.
 
 use std::f64::consts::PI;
 
@@ -88,14 +88,14 @@ pub fn align(
     options: &AlignOptions,
     observer: &dyn Observer,
 ) -> Result<Alignment, Cancelled> {
-    observer.progress(Stage::Patches, 0, 1);
+    observer.progress(Stage::Patches, 0, 0);
     let patches = patches(reconstruction, superpixels, &options.limits.patches);
     let start = local_start(options, &patches, city);
     if let Some(obstacle) = obstacle::find(city, reconstruction, &patches, &start, &options.limits) {
         return Ok(report::refused(&obstacle, city, &patches, options));
     }
     go_on(observer)?;
-    observer.progress(Stage::City, 0, 1);
+    observer.progress(Stage::City, 0, 0);
     let task = Task { city, patches: &patches, start: &start, options, observer };
     let answer = task.answer()?;
     let up_elsewhere = up_elsewhere(&answer.ruling, &patches, &start, options);
@@ -122,7 +122,7 @@ struct Task<'a> {
     observer: &'a dyn Observer,
 }
 
-/// One way of taking up, searched.
+/// The result of a search under one direction of up.
 struct View<'a> {
     upright: Upright,
     scene: Scene<'a>,
@@ -130,7 +130,7 @@ struct View<'a> {
     candidates: Vec<Candidate>,
 }
 
-/// What was found, and what is said of it.
+/// Evidence, decision and search statistics of one run.
 pub(super) struct Outcome {
     pub ruling: Decision,
     pub found: Gathered,
@@ -138,7 +138,7 @@ pub(super) struct Outcome {
 }
 
 impl<'a> Task<'a> {
-    /// With the scale that was given, if one was. Where the data deny it, or cannot tell with it, what they say with the scale free is asked: a
+    /// Aligns at the given scale, or with the scale free where none was given. Where the data deny it, or cannot tell with it, what they say with the scale free is asked: a
     /// pose of the wrong scale is wrong everywhere.
     fn answer(&self) -> Result<Outcome, Cancelled> {
         if self.options.fixed_scale.is_none() {
@@ -154,7 +154,7 @@ impl<'a> Task<'a> {
 
     fn outcome(&self, motion: Motion) -> Result<Outcome, Cancelled> {
         let view = self.best_view(motion)?;
-        self.observer.progress(Stage::Evidence, 0, 1);
+        self.observer.progress(Stage::Evidence, 0, 0);
         let surroundings = self.surroundings(&view);
         let contest = view
             .candidates

@@ -13,18 +13,18 @@ use crate::limits::Limits;
 use crate::robust::Random;
 use crate::solvers::Row;
 
-/// How a row errs besides scale and place.
+/// Errors of a row that are not those of scale and translation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowErrors {
     /// Error of the model and of a patch's centre.
     sigma_m: f64,
     /// What an uncertain rotation adds, per metre of distance from the middle of the cloud.
     sigma_per_m: f64,
-    /// What is known to within this is known.
+    /// A pair whose distance is predicted better than this adds no information.
     informative_sigma_m: f64,
     /// Of the cloud.
     radius_m: f64,
-    /// How far a belief is believed.
+    /// Gate of the prediction.
     reach_sigmas: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Which patch may lie on which plane of the city, and which poses follow: fields of facets, candidate pairs, the search and its
+//! Which patch may lie on which plane of the city, and which poses follow: what is known beforehand, candidate pairs, the search and its
 //! refinement.
 
 mod belief;

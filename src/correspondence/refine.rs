@@ -7,6 +7,7 @@
 //!              from the facet's plane is minimised with Tukey's weights by Gauss-Newton steps that leave alone what the data
 //!              do not hold. All points of one plane of the city share the model's error, so n of them with noise sigma weigh
 //!              as n / (sigma^2 + n tau^2): one plane is one observation of limited weight.
+//! Source       docs/mathematics.md 15 (16, 17)
 //! Fails when   the pose is farther off than the gate: then it stays near where it was and scores badly
 
 use rayon::prelude::*;
@@ -36,7 +37,7 @@ pub struct PoseRefiner<'a> {
 
 /// Sample points per task.
 const CHUNK: usize = 512;
-/// Pairs settle within some steps.
+/// Most steps of sharpening: pairs of points and facets do not change after some.
 const SHARPENING_STEPS: usize = 5;
 /// A cloud smaller than this has no turn or scale to speak of.
 const SMALLEST_RADIUS_M: f64 = 1e-3;

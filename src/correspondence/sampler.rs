@@ -71,7 +71,7 @@ pub struct Sampler<'a> {
     kept: AtomicUsize,
 }
 
-/// What a sample goes on with.
+/// Result of drawing the next pair.
 enum Telling {
     PatchPlanePair(Drawn<PatchPlanePair>),
     /// No patch drawn would say anything new.
@@ -96,12 +96,12 @@ const MOST_OFFERS_KEPT: usize = 2_000_000;
 
 /// Draws of the pilot that tells whether patches find planes. Derived: a share is then known to 3 %.
 const PILOT_DRAWS: u64 = 256;
-/// Its own, so that what it tells does not hang on the user's seed.
+/// Fixed seed of the pilot, independent of the user's.
 const PILOT_SEED: u64 = 0;
 /// Two normals nearer to parallel than this do not fix a rotation.
 const LEAST_SIN_BETWEEN: f64 = 0.3;
 /// Patches compared when the next one is chosen.
-const TENDER: usize = 6;
+const PATCHES_COMPARED: usize = 6;
 
 impl<'a> Sampler<'a> {
     pub fn new(scene: &'a Scene<'a>) -> Sampler<'a> {
@@ -345,7 +345,7 @@ impl<'a> Sampler<'a> {
     fn least_known(&self, belief: &ScaleTranslationEstimate, random: &mut Random) -> Option<usize> {
         let mut best = None;
         let mut most = self.limits.informative_sigma_m.powi(2);
-        for _ in 0..TENDER {
+        for _ in 0..PATCHES_COMPARED {
             let i = random.weighted(&self.all)?;
             let p = &self.level_cloud.patches[i];
             let variance = belief.variance(&p.center, &(belief.turn(&p.normal)));

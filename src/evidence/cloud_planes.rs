@@ -5,6 +5,7 @@
 //! Output       planes of the cloud, each with its pieces and the sample points that are asked of each piece
 //! Method       coplanar patches are pieces of one plane of the cloud, the largest first: a front across eight houses lies on the city by one
 //!              coincidence, not by eight. Planes of the cloud are of three classes: level, wall, slope
+//! Source       docs/mathematics.md 16.1
 //! Assumptions  planes of the cloud meet the city independently of each other under a wrong pose
 
 use crate::correspondence::{LevelPatch, Scene};

@@ -29,7 +29,7 @@ pub struct EvaluatedCandidate {
     pub by_chance: bool,
 }
 
-/// What judges the poses of one cloud in one city.
+/// What candidates of one cloud in one city are compared on: planes of the cloud, rates by chance.
 pub struct CandidateEvaluation<'a> {
     scene: &'a Scene<'a>,
     cloud_planes: CloudPlanes,

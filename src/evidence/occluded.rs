@@ -6,7 +6,8 @@
 //! Method       a point is hidden where the city blocks its lines of sight to two of its cameras or, where no camera is known, where it lies deep under a
 //!              roof or the ground. One house occludes all that was seen behind it, so that points do not speak one by one: the share
 //!              speaks once, by its rank among the null poses', a chance p that becomes a likelihood ratio (1 - p + p ln p) / (p ln^2 p)
-//! Source       the mean of all ratios k p^(k-1): Vovk and Wang 2021, section 2; its bound: Sellke, Bayarri, Berger 2001
+//! Source       the mean of all ratios k p^(k-1): Vovk and Wang 2021, section 2; its bound: Sellke, Bayarri, Berger 2001;
+//!              docs/mathematics.md 16.3
 //! Why          wrong poses find walls to lie on, but rarely leave the streets free from which they were seen; this does not depend on
 //!              how much of the scene the model knows. A right pose may hide something, too (glass, a new street): it never loses more
 //!              than one bit by that
@@ -71,7 +72,7 @@ pub fn bits(share: f64, by_chance: &[f64]) -> f64 {
     of_chance((less as f64 + (alike + 1) as f64 / 2.0) / (by_chance.len() + 1) as f64).log2()
 }
 
-/// The likelihood ratio of a chance.
+/// The e-value of a p-value (docs/mathematics.md (22)).
 fn of_chance(p: f64) -> f64 {
     let log = p.ln();
     // Both parts of the fraction vanish at one.

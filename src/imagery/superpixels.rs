@@ -71,7 +71,7 @@ struct Region {
     part_of: Option<u32>,
 }
 
-/// As one of the two regions beside it has it; the other has the same.
+/// Border of a region with one neighbour; both regions have it.
 #[derive(Clone, Copy)]
 struct Border {
     with: u32,

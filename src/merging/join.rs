@@ -1,7 +1,8 @@
 //! The joining of parts on one page: parts, pairs, network, fuse.
 
+use super::error::MergeError;
 use super::fuse::fuse;
-use super::ledger::{Ledger, Unbalanced};
+use super::ledger::Ledger;
 use super::limits::MergeLimits;
 use super::network::solve;
 use super::outcome::{Edge, Merge};
@@ -9,7 +10,7 @@ use super::pairwise::{Comparison, EvidenceChoice};
 use super::part::Part;
 use super::prepared::PreparedPart;
 use crate::geometry::Similarity;
-use crate::observer::{Observer, Stage};
+use crate::observer::{Observer, Stage, go_on};
 use crate::reconstruction::Reconstruction;
 
 /// What the user may set.
@@ -22,16 +23,17 @@ pub struct JoinOptions {
 }
 
 /// Joins the parts. The order in which they are given changes nothing but the frame.
-pub fn join(parts: &[Part], options: &JoinOptions, observer: &dyn Observer) -> Result<Merge, Unbalanced> {
+pub fn join(parts: &[Part], options: &JoinOptions, observer: &dyn Observer) -> Result<Merge, MergeError> {
     let limits = &options.limits;
     observer.progress(Stage::ComparingParts, 0, 0);
     let order = canonical_order(parts);
     let prepared: Vec<PreparedPart<'_>> = parts.iter().map(|part| PreparedPart::of(part, limits)).collect();
     let JoinOptions { seed, evidence, .. } = *options;
-    let pairs = Comparison { parts: &prepared, order: &order, evidence, limits, seed }.pairs();
+    let pairs = Comparison { parts: &prepared, order: &order, evidence, limits, seed, observer }.pairs()?;
     let solved = solve(&prepared, &order, pairs, limits);
     drop(prepared);
 
+    go_on(observer)?;
     observer.progress(Stage::JoiningParts, 0, 0);
     let places: Vec<Option<Similarity>> = solved.places.iter().map(|p| p.merged_from_part).collect();
     let placed: Vec<usize> = order.into_iter().filter(|&p| places[p].is_some()).collect();

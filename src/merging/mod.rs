@@ -10,6 +10,7 @@
 //! Assumptions  a photograph of one name shows the same pixels in both parts, at whatever size
 //! Fails when   two parts share no photograph and no anchor, or their shared photographs have too few keypoints in common
 
+mod error;
 mod extent;
 mod fuse;
 mod join;
@@ -24,6 +25,7 @@ mod prepared;
 mod shared_photos;
 mod surfaces;
 
+pub use error::MergeError;
 pub use join::{JoinOptions, join};
 pub use ledger::{Account, DropReason, Ledger, Unbalanced};
 pub use limits::MergeLimits;

@@ -1,4 +1,5 @@
-//! Facets of one object that lie in one plane become one [`CityPlane`]: one surface, one model error, one observation.
+//! Facets of one object that lie in one plane become one [`CityPlane`]: one surface; in refinement it shares one error. (The last
+//! estimate groups surfaces into building planes and cells, the evidence the cloud into planes.)
 
 use std::collections::HashMap;
 

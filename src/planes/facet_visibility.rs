@@ -28,7 +28,7 @@ impl FacetVisibility {
         FacetVisibility { known: (0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect(), limits: *limits }
     }
 
-    /// Two threads that ask at once find the same.
+    /// Whether a triangle is exposed; several threads may ask at once.
     pub fn of(&self, triangle: u32, surface: &CitySurface) -> bool {
         let known = &self.known[triangle as usize];
         match known.load(Ordering::Relaxed) {

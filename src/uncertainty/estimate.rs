@@ -7,6 +7,7 @@
 //!              maximum likelihood), each with a prior worth a few observations. Buildings, fronts and pieces have heavy tails
 //!              (Student's t): a rebuilt house, a front that is another's, a piece with a tree before it are outliers as wholes.
 //!              Points are put on facets anew after each round
+//! Source       docs/mathematics.md 17.2
 //! Fails when   the pose is in another basin: then it is exactly wrong
 
 use super::findings::SystematicErrors;
@@ -17,7 +18,7 @@ use crate::correspondence::PoseRefiner;
 use crate::geometry::Similarity;
 use crate::robust::{Chart, Matrix7};
 
-/// A pose for good.
+/// The final pose with its information.
 #[derive(Clone, Debug)]
 pub struct Estimate {
     pub city_from_level: Similarity,

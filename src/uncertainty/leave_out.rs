@@ -6,7 +6,8 @@
 //!              much. It assumes nothing of how a building errs; what all of them share it cannot see. For fronts the information that is left
 //!              is told as it is
 //! Fails when   there are few buildings: then their scatter says little, and below a least number it is not asked
-//! Source       Efron (1982), The jackknife, the bootstrap and other resampling plans
+//! Source       Efron (1982), The jackknife, the bootstrap and other resampling plans;
+//!              docs/mathematics.md 17.3
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
@@ -57,7 +58,7 @@ impl Scatter {
         Scatter { whiten: Matrix7::identity(), color: Matrix7::identity(), shrink: Matrix7::identity() }
     }
 
-    /// Information as small as the scatter wants it.
+    /// Information reduced to match the scatter of the jackknife.
     pub fn widened(&self, information: &Matrix7) -> Matrix7 {
         let white = self.color.transpose() * information * self.color;
         let wide = self.whiten.transpose() * self.shrink * white * self.shrink * self.whiten;

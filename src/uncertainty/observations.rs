@@ -28,7 +28,7 @@ pub(super) struct SurfaceCell {
     pub points: f64,
 }
 
-/// What errs by the same spread: surveys of ground and of buildings differ, and a box's lid says little of the roof below it.
+/// Class of surfaces that share one variance: surveys of ground and of buildings differ, and a box's lid says little of the roof below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Of an object that has walls.

@@ -18,16 +18,17 @@ use crate::robust::{Chart, Matrix7, Motion, NormalEquations, Vector7};
 
 /// Unknowns of the pose.
 pub(super) const POSE: usize = 7;
-/// Unknowns that are common to the pose and the whole model: seven of the pose, one of walls, one of lids.
+/// Index of the unknown that is common to all walls, and of that of all lids.
 pub(super) const WALLS: usize = POSE;
 pub(super) const LIDS: usize = POSE + 1;
+/// Unknowns that are common to the pose and the whole model: seven of the pose, one of walls, one of lids.
 pub(super) const COMMON: usize = POSE + 2;
 /// Shift and turn of a building.
 const OF_BUILDING: usize = 4;
 /// Offset and tilts of a front.
 const OF_FRONT: usize = 3;
 
-/// Standard deviations, squared, m^2.
+/// Variances of the random effects, m^2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Variances {
     /// By kind.
@@ -59,7 +60,7 @@ pub(super) struct System<'a> {
     pub covariance: DMatrix<f64>,
 }
 
-/// One building's share.
+/// Normal equations of one building.
 pub(super) struct BuildingSystem {
     /// Of all its fronts, before the building's own unknowns are taken out: common, distance, building.
     pub whole: DMatrix<f64>,
@@ -124,7 +125,7 @@ impl<'a> System<'a> {
         system
     }
 
-    /// Takes for a spread what Student's t scatters by, its tails included: more than its core by nu / (nu - 2).
+    /// Multiplies variances by nu / (nu - 2), the variance of Student's t with nu degrees of freedom.
     pub fn take_tails_in(&mut self) {
         let student_dof = self.limits.student_dof;
         let times = student_dof / (student_dof - 2.0);

@@ -1,17 +1,23 @@
 //! From evidence to a verdict.
 //!
+//! The first that holds:
+//!
 //! | verdict | when |
 //! |---|---|
-//! | failed | the evidence for the best pose is no more than chance would find among the poses that were tried |
-//! | ambiguous | a truly different pose is not ruled out by the evidence, or explains more beyond the start's reach |
+//! | failed | there is no pose (or nothing to search: `align/obstacle.rs`) |
+//! | undetermined | a given scale is contradicted by a pose of free scale whose evidence is enough |
+//! | failed | the evidence for the best pose is less than what is needed |
+//! | ambiguous | a rival beyond the start's reach has more bits, or one within it is less than log2(1 / false alarms) behind |
 //! | undetermined | a freedom is not determined (see [`super::freedoms`]) |
 //! | aligned | otherwise |
 //!
 //! Method       Bayes: a pose with b bits of evidence is 2^b times as likely as before the data were seen. Among so many distinct poses chance gives
 //!              one such a lead; the false alarms that are allowed are shared out among them as the start finds them likely, so that
-//!              a pose of share w needs log2(1/w) bits more. Each rival is as likely as its own bits, and the start's, say. The
-//!              chance that the best is wrong is held against the false alarms that are allowed: one number decides all
-//! Source       a-contrario test: Desolneux, Moisan, Morel 2000; weighted union bound: Genovese, Roeder, Wasserman 2006
+//!              a pose of share w needs log2(1/w) bits more. Each rival is as likely as its own bits, and the start's, say. Two
+//!              comparisons decide, both in bits: the evidence against what is needed, and the lead over every rival against log2 of one
+//!              over the false alarms. [`Certainty::probability`] is reported only
+//! Source       a-contrario test: Desolneux, Moisan, Morel 2000; weighted union bound: Genovese, Roeder, Wasserman 2006;
+//!              docs/mathematics.md 16.4
 //!
 //! Differences along freedoms that nothing holds do not count. Beyond three sigmas the start rules a pose out unless that explains
 //! more: a start may be wrong, but where two poses explain the same (the halves of a symmetric block), only the start can tell.

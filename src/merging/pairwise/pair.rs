@@ -16,6 +16,7 @@ use crate::merging::limits::MergeLimits;
 use crate::merging::outcome::{Edge, EdgeSource};
 use crate::merging::prepared::PreparedPart;
 use crate::merging::shared_photos::{SharedPhoto, shared_photos};
+use crate::observer::{Cancelled, Observer, go_on};
 
 /// What is taken from the shared photographs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,6 +45,7 @@ pub(in crate::merging) struct Comparison<'a> {
     pub evidence: EvidenceChoice,
     pub limits: &'a MergeLimits,
     pub seed: u64,
+    pub observer: &'a dyn Observer,
 }
 
 /// Two parts that share photographs.
@@ -55,10 +57,11 @@ struct Couple {
 
 impl Comparison<'_> {
     /// All pairs of parts that share photographs.
-    pub fn pairs(&self) -> Vec<Pair> {
+    pub fn pairs(&self) -> Result<Vec<Pair>, Cancelled> {
         let couples: Vec<Couple> = self.couples();
         self.prepare_surfaces(&couples);
-        couples.into_par_iter().map(|couple| self.compare(couple)).collect()
+        let compare = |couple| go_on(self.observer).map(|()| self.compare(couple));
+        couples.into_par_iter().map(compare).collect()
     }
 
     fn couples(&self) -> Vec<Couple> {

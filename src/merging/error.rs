@@ -1,0 +1,18 @@
+//! Why parts could not be joined at all.
+
+use super::ledger::Unbalanced;
+use crate::imagery::ImageryError;
+use crate::observer::Cancelled;
+
+/// A file that cannot be read, a sum that does not come out, or a cancellation. Why a pair was *refused* stands in the edge's and the part's
+/// `reason`.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    #[error(transparent)]
+    Imagery(#[from] ImageryError),
+    #[error(transparent)]
+    Unbalanced(#[from] Unbalanced),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}

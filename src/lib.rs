@@ -113,8 +113,8 @@ pub mod steps {
 /// written again.
 pub mod output {
     pub use crate::export::{
-        Discard, Formats, Lie, Output, OutputError, OutputKind, Replace, UnpackedFile, planes_report, write_placed,
-        write_planes_glb,
+        Discard, Formats, Output, OutputError, OutputKind, PlaneAttitude, Replace, UnpackedFile, planes_report,
+        write_placed, write_planes_glb,
     };
     pub use crate::format::{StoredAlignment, read_alignment};
 }

@@ -10,7 +10,7 @@ use crate::uncertainty::{Estimate, SystematicErrors, estimate};
 use crate::verdict::{Evidence, GivenScale, PoseInformation, Rival};
 
 /// The evidence, and the points that it rests on.
-pub(super) struct Gathered {
+pub(super) struct VerdictInput {
     pub evidence: Evidence,
     /// Which points lie on which planes in the best pose, sorted by plane.
     pub rows: Vec<PointPlaneMatch>,
@@ -21,9 +21,13 @@ pub(super) struct Gathered {
 
 /// Candidates and sharpened null poses with their evidence, the best first, then by evidence and start together. The search's best stays
 /// first unless another of its poses leads it by more than log2 of one over the false alarms.
-pub(super) fn heard(contest: &CandidateEvaluation, scene: &Scene, candidates: &[Candidate]) -> Vec<EvaluatedCandidate> {
+pub(super) fn evaluated_candidates(
+    evaluation: &CandidateEvaluation,
+    scene: &Scene,
+    candidates: &[Candidate],
+) -> Vec<EvaluatedCandidate> {
     let of_search = |candidate: &Candidate| EvaluatedCandidate {
-        weighed: contest.weigh(&candidate.refined.city_from_level),
+        weighed: evaluation.weigh(&candidate.refined.city_from_level),
         candidate: candidate.clone(),
         by_chance: false,
     };
@@ -35,7 +39,7 @@ pub(super) fn heard(contest: &CandidateEvaluation, scene: &Scene, candidates: &[
         if likelihood(&all[i]) > likelihood(&all[best]) + lead { i } else { best }
     });
     all.swap(0, best);
-    all.extend(contest.others.iter().cloned());
+    all.extend(evaluation.others.iter().cloned());
     if let [_, others @ ..] = &mut all[..] {
         others.sort_by(|a, b| likelihood(b).total_cmp(&likelihood(a)));
     }
@@ -43,36 +47,36 @@ pub(super) fn heard(contest: &CandidateEvaluation, scene: &Scene, candidates: &[
 }
 
 /// Gathers what the verdict reads of the poses that were heard; `given_scale` where the scale was given, `accuracy_m` where one is asked for.
-pub(super) fn gather(
+pub(super) fn collect(
     refiner: &PoseRefiner,
-    contest: Option<&CandidateEvaluation>,
-    contestants: &[EvaluatedCandidate],
+    evaluation: Option<&CandidateEvaluation>,
+    evaluated: &[EvaluatedCandidate],
     given_scale: Option<GivenScale>,
     accuracy_m: Option<f64>,
-) -> Gathered {
+) -> VerdictInput {
     let scene = refiner.scene;
-    let best = contestants.first().map(|best| estimate(refiner, &best.candidate.refined.city_from_level));
+    let best = evaluated.first().map(|best| estimate(refiner, &best.candidate.refined.city_from_level));
     let rows = best.as_ref().map_or(Vec::new(), |best| rows(refiner, &best.city_from_level));
     let hold = hold(refiner, best.as_ref(), given_scale, accuracy_m);
     let findings = best.as_ref().map_or(SystematicErrors::default(), |best| best.findings);
-    let rivals = best.as_ref().map_or(Vec::new(), |best| rivals(refiner, contestants, &best.city_from_level));
-    let by_chance = contest.map_or(&[][..], |contest| &contest.by_chance);
+    let rivals = best.as_ref().map_or(Vec::new(), |best| rivals(refiner, evaluated, &best.city_from_level));
+    let by_chance = evaluation.map_or(&[][..], |evaluation| &evaluation.by_chance);
     let speaks = |c: &EvaluatedCandidate| c.weighed.by_cloud_plane.iter().filter(|bits| **bits >= SPEAKS_BITS).count();
     let evidence = Evidence {
         rivals,
         hold,
-        witnesses: contest.map_or(0, CandidateEvaluation::cloud_planes),
-        speaking: contestants.first().map_or(0, speaks),
+        witnesses: evaluation.map_or(0, CandidateEvaluation::cloud_planes),
+        speaking: evaluated.first().map_or(0, speaks),
         by_chance: by_chance.len(),
         most_by_chance: by_chance.first().copied().unwrap_or(0.0),
     };
-    Gathered { evidence, rows, patch_points: scene.level_cloud.patch_points, findings }
+    VerdictInput { evidence, rows, patch_points: scene.level_cloud.patch_points, findings }
 }
 
 /// The poses as the verdict compares them: the best as estimated, and so those about it, since what the last estimate leads to the best
 /// pose is no rival; the search's own gates leave some poses half-way.
-fn rivals(refiner: &PoseRefiner, contestants: &[EvaluatedCandidate], best: &Similarity) -> Vec<Rival> {
-    let Some((first, others)) = contestants.split_first() else { return Vec::new() };
+fn rivals(refiner: &PoseRefiner, evaluated: &[EvaluatedCandidate], best: &Similarity) -> Vec<Rival> {
+    let Some((first, others)) = evaluated.split_first() else { return Vec::new() };
     let place = Basin::around(refiner, best);
     let last = |c: &EvaluatedCandidate| {
         let pose = c.candidate.refined.city_from_level;
@@ -109,15 +113,15 @@ fn rows(refiner: &PoseRefiner, pose: &Similarity) -> Vec<PointPlaneMatch> {
     refiner.point_plane_matches(&all, pose, refiner.scene.gate_unit_m)
 }
 
-fn rival(refiner: &PoseRefiner, contestant: &EvaluatedCandidate, city_from_level: &Similarity) -> Rival {
-    let (scene, candidate) = (refiner.scene, &contestant.candidate);
+fn rival(refiner: &PoseRefiner, evaluated_candidate: &EvaluatedCandidate, city_from_level: &Similarity) -> Rival {
+    let (scene, candidate) = (refiner.scene, &evaluated_candidate.candidate);
     let local = scene.city_from_sfm(city_from_level);
     Rival {
         city_from_sfm: Similarity { translation: local.translation + scene.city.model.origin, ..local },
-        bits: contestant.weighed.bits,
+        bits: evaluated_candidate.weighed.bits,
         prior_bits: scene.prior.bits(city_from_level),
         beyond_start: !scene.prior.reaches(&candidate.refined.city_from_level),
-        by_chance: contestant.by_chance,
+        by_chance: evaluated_candidate.by_chance,
     }
 }
 
@@ -129,7 +133,7 @@ fn chart_of_prior(refiner: &PoseRefiner) -> Chart {
 /// The scale that the data have, were it free, from a pose on.
 pub(super) fn scale_of_data(
     refiner: &PoseRefiner,
-    contest: &CandidateEvaluation,
+    evaluation: &CandidateEvaluation,
     best: &EvaluatedCandidate,
 ) -> GivenScale {
     let (scene, free) = (refiner.scene, &refiner.with_free_scale());
@@ -150,6 +154,6 @@ pub(super) fn scale_of_data(
         given,
         of_data: given * pose.scale,
         log_sigma: if variance > 0.0 { variance.sqrt() / chart.radius } else { f64::INFINITY },
-        bits: contest.weigh(pose).bits,
+        bits: evaluation.weigh(pose).bits,
     }
 }

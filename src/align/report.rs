@@ -1,7 +1,7 @@
 //! What the stages found, put together as an [`Alignment`].
 
 use super::AlignOptions;
-use super::evidence::Gathered;
+use super::evidence::VerdictInput;
 use super::obstacle::Obstacle;
 use super::task::Outcome;
 use crate::correspondence::{NO_SOLVER, PointPlaneMatch};
@@ -18,15 +18,15 @@ pub(super) fn tell(
     city: &PreparedCity,
     options: &AlignOptions,
 ) -> Alignment {
-    let Outcome { ruling, found, hypotheses } = outcome;
-    let Gathered { evidence, rows, patch_points, findings } = found;
+    let Outcome { decision, found, hypotheses } = outcome;
+    let VerdictInput { evidence, rows, patch_points, findings } = found;
     let (rivals, hold) = (&evidence.rivals, &evidence.hold);
     Alignment {
-        verdict: ruling.verdict,
-        reason: ruling.reason + &up_elsewhere.map_or(String::new(), words_of_up),
+        verdict: decision.verdict,
+        reason: decision.reason + &up_elsewhere.map_or(String::new(), words_of_up),
         best_candidate: rivals.first().map(|r| r.city_from_sfm),
-        alternatives: ruling.alternatives,
-        certainty: ruling.certainty,
+        alternatives: decision.alternatives,
+        certainty: decision.certainty,
         origin: city.model.origin,
         center: hold.chart.center,
         radius: hold.chart.radius,
@@ -37,7 +37,7 @@ pub(super) fn tell(
         support: support(&rows, patch_points),
         evidence: evidence_of_planes(&rows, city),
         search: SearchSummary { solver: hypotheses.solver, samples: hypotheses.samples as u64, seed: options.seed },
-        warnings: warnings(patches).into_iter().chain(findings.worth_telling(&options.limits.uncertainty)).collect(),
+        warnings: warnings(patches).into_iter().chain(findings.notable(&options.limits.uncertainty)).collect(),
     }
 }
 

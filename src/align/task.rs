@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::evidence::Gathered;
+use super::evidence::VerdictInput;
 use super::{evidence, obstacle, report};
 use crate::correspondence::{Candidate, Hypotheses, PoseRefiner, Scene, candidates, joined, search};
 use crate::evidence::CandidateEvaluation;
@@ -98,7 +98,7 @@ pub fn align(
     observer.progress(Stage::City, 0, 0);
     let task = Task { city, patches: &patches, start: &start, options, observer };
     let answer = task.answer()?;
-    let up_elsewhere = up_elsewhere(&answer.ruling, &patches, &start, options);
+    let up_elsewhere = up_elsewhere(&answer.decision, &patches, &start, options);
     Ok(report::tell(answer, &patches, up_elsewhere, city, options))
 }
 
@@ -132,8 +132,8 @@ struct View<'a> {
 
 /// Evidence, decision and search statistics of one run.
 pub(super) struct Outcome {
-    pub ruling: Decision,
-    pub found: Gathered,
+    pub decision: Decision,
+    pub found: VerdictInput,
     pub hypotheses: Hypotheses,
 }
 
@@ -149,28 +149,29 @@ impl<'a> Task<'a> {
             return Ok(of_given);
         }
         let free = self.outcome(Motion::Similarity)?;
-        Ok(if free.ruling.scale_is_denied { free } else { of_given })
+        Ok(if free.decision.scale_is_denied { free } else { of_given })
     }
 
     fn outcome(&self, motion: Motion) -> Result<Outcome, Cancelled> {
         let view = self.best_view(motion)?;
         self.observer.progress(Stage::Evidence, 0, 0);
-        let surroundings = self.surroundings(&view);
-        let contest = view
+        let null_pose_scene = self.null_pose_scene(&view);
+        let evaluation = view
             .candidates
             .first()
-            .map(|best| CandidateEvaluation::new(&surroundings, self.patches, &best.refined, self.options.seed));
-        let contestants =
-            contest.as_ref().map_or(Vec::new(), |contest| evidence::heard(contest, &view.scene, &view.candidates));
+            .map(|best| CandidateEvaluation::new(&null_pose_scene, self.patches, &best.refined, self.options.seed));
+        let evaluated = evaluation
+            .as_ref()
+            .map_or(Vec::new(), |evaluation| evidence::evaluated_candidates(evaluation, &view.scene, &view.candidates));
         go_on(self.observer)?;
         let refiner = PoseRefiner::new(&view.scene);
         let given_scale = self
             .options
             .fixed_scale
-            .and_then(|_| Some(evidence::scale_of_data(&refiner, contest.as_ref()?, contestants.first()?)));
-        let found = evidence::gather(&refiner, contest.as_ref(), &contestants, given_scale, self.options.accuracy_m);
-        let ruling = judge(&found.evidence, &self.options.limits.verdict);
-        Ok(Outcome { ruling, found, hypotheses: view.hypotheses })
+            .and_then(|_| Some(evidence::scale_of_data(&refiner, evaluation.as_ref()?, evaluated.first()?)));
+        let found = evidence::collect(&refiner, evaluation.as_ref(), &evaluated, given_scale, self.options.accuracy_m);
+        let decision = judge(&found.evidence, &self.options.limits.verdict);
+        Ok(Outcome { decision, found, hypotheses: view.hypotheses })
     }
 
     /// Searches under every up that there may be; the view with the best candidate, joined by the candidates of the others.
@@ -202,7 +203,7 @@ impl<'a> Task<'a> {
     }
 
     /// The scene of a view with a prior that reaches over its neighbourhood, whatever the heading.
-    fn surroundings(&self, view: &View) -> Scene<'a> {
+    fn null_pose_scene(&self, view: &View) -> Scene<'a> {
         let limits = &self.options.limits;
         let StartSigmas { position_m, .. } = *self.start.sigmas();
         let least_m = limits.null_poses.least_reach_m / limits.reach_sigmas;
@@ -228,8 +229,8 @@ fn uprights(patches: &Patches, start: &Start, up: Up, limits: &Limits) -> Vec<Up
 }
 
 /// The up that walls and cameras see, where nothing was found and it lies beyond the start's reach.
-fn up_elsewhere(ruling: &Decision, patches: &Patches, start: &Start, options: &AlignOptions) -> Option<UpCandidate> {
-    let failed = ruling.verdict == Verdict::Failed && options.up == Up::Auto;
+fn up_elsewhere(decision: &Decision, patches: &Patches, start: &Start, options: &AlignOptions) -> Option<UpCandidate> {
+    let failed = decision.verdict == Verdict::Failed && options.up == Up::Auto;
     failed.then(|| up_beyond_start(patches, &up_of(start), &options.limits)).flatten()
 }
 

@@ -4,7 +4,7 @@ use std::fmt::{Display, Write};
 use std::path::Path;
 
 use crate::city::CityModel;
-use crate::export::Lie;
+use crate::export::PlaneAttitude;
 use crate::format::escaped;
 use crate::merging::{Account, Merge};
 use crate::planes::CityPlanes;
@@ -101,11 +101,15 @@ pub fn of_city(city: &CityModel, planes: &CityPlanes, files: &[String], output: 
             table.row(name, format!("{:.2} to {:.2} m", low[axis], high[axis]));
         }
     }
-    let kinds =
-        [(Lie::Wall, "walls"), (Lie::Slanted, "slanted"), (Lie::LevelUp, "level, up"), (Lie::LevelDown, "level, down")];
+    let kinds = [
+        (PlaneAttitude::Wall, "walls"),
+        (PlaneAttitude::Slanted, "slanted"),
+        (PlaneAttitude::LevelUp, "level, up"),
+        (PlaneAttitude::LevelDown, "level, down"),
+    ];
     for (lie, name) in kinds {
         let (mut count, mut area_m2) = (0, 0.0);
-        for plane in planes.planes.iter().filter(|plane| Lie::of(&plane.plane.normal) == lie) {
+        for plane in planes.planes.iter().filter(|plane| PlaneAttitude::of(&plane.plane.normal) == lie) {
             count += 1;
             area_m2 += plane.area_m2;
         }

@@ -107,8 +107,8 @@ fn improved(refiner: &PoseRefiner, stage: &StageLimits, candidate: &Candidate) -
     let gates_m: Vec<f64> = stage.gates_units.iter().map(|g| g * scene.gate_unit_m).collect();
     let first = refiner.refine(&point_subset, &candidate.refined.city_from_level, &gates_m);
     let spectrum = first.chart.spectrum(&first.equations.full());
-    let (voters, gate_m) = (voters(scene, stage), stage.ranking_gate_units * scene.gate_unit_m);
-    let slid = walk_weak_directions(scene, &voters, &first.chart, &spectrum, &first.city_from_level, gate_m);
+    let (scoring_points, gate_m) = (scoring_points(scene, stage), stage.ranking_gate_units * scene.gate_unit_m);
+    let slid = walk_weak_directions(scene, &scoring_points, &first.chart, &spectrum, &first.city_from_level, gate_m);
     let refined = if slid == first.city_from_level { first } else { refiner.refine(&point_subset, &slid, &gates_m) };
     judged(scene, stage, Candidate { refined, ..candidate.clone() })
 }
@@ -117,7 +117,7 @@ fn improved(refiner: &PoseRefiner, stage: &StageLimits, candidate: &Candidate) -
 fn judged(scene: &Scene, stage: &StageLimits, candidate: Candidate) -> Candidate {
     let pose = candidate.refined.city_from_level;
     let occluded = if stage.sight { blocked_share(scene, &pose) } else { 0.0 };
-    let share = scene.inlier_share(&voters(scene, stage), &pose, stage.ranking_gate_units * scene.gate_unit_m);
+    let share = scene.inlier_share(&scoring_points(scene, stage), &pose, stage.ranking_gate_units * scene.gate_unit_m);
     Candidate { share, occluded, prior_cost: scene.prior.cost(&pose), ..candidate }
 }
 
@@ -131,7 +131,7 @@ fn point_subset(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
 }
 
 /// Points of no patch have no weight in the score.
-fn voters(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
+fn scoring_points(scene: &Scene, stage: &StageLimits) -> Vec<u32> {
     scene.level_cloud.point_subset(
         stage.sample_points.min(scene.level_cloud.patch_points).min(scene.limits.refinement.most_scoring_points),
     )

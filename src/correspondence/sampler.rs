@@ -72,7 +72,7 @@ pub struct Sampler<'a> {
 }
 
 /// Result of drawing the next pair.
-enum Telling {
+enum NextPair {
     PatchPlanePair(Drawn<PatchPlanePair>),
     /// No patch drawn would say anything new.
     AllIsKnown,
@@ -129,12 +129,12 @@ impl<'a> Sampler<'a> {
             turned: rising(|p| has_azimuth(&p.normal)),
             draws: 1,
         };
-        let draws = if sampler.fed() < limits.feasible_share { limits.most_draws } else { 1 };
+        let draws = if sampler.feasible_draws() < limits.feasible_share { limits.most_draws } else { 1 };
         Sampler { draws, ..sampler }
     }
 
     /// The share of draws that a pilot can feed.
-    fn fed(&self) -> f64 {
+    fn feasible_draws(&self) -> f64 {
         let is_fed = |draw: &u64| self.draw(0, &mut Random::stream(PILOT_SEED, *draw)).is_some();
         (0..PILOT_DRAWS).filter(is_fed).count() as f64 / PILOT_DRAWS as f64
     }
@@ -153,10 +153,10 @@ impl<'a> Sampler<'a> {
             Motion::Similarity => 4,
         };
         while draft.pairs.len() < unknowns {
-            match self.telling_pair(&draft.belief, random) {
-                Telling::PatchPlanePair(pair) => draft.take(self.level_cloud, pair),
-                Telling::AllIsKnown => break,
-                Telling::NothingFits => return None,
+            match self.informative_pair(&draft.belief, random) {
+                NextPair::PatchPlanePair(pair) => draft.take(self.level_cloud, pair),
+                NextPair::AllIsKnown => break,
+                NextPair::NothingFits => return None,
             }
         }
         let (completion, chance) = draft.belief.completion(unknowns.saturating_sub(draft.pairs.len()), random)?;
@@ -196,14 +196,14 @@ impl<'a> Sampler<'a> {
     }
 
     /// A pair of which the belief says little. A patch that can lie nowhere is not on the city, and another takes its turn.
-    fn telling_pair(&self, belief: &ScaleTranslationEstimate, random: &mut Random) -> Telling {
+    fn informative_pair(&self, belief: &ScaleTranslationEstimate, random: &mut Random) -> NextPair {
         for _ in 0..self.draws {
-            let Some(patch) = self.least_known(belief, random) else { return Telling::AllIsKnown };
+            let Some(patch) = self.least_known(belief, random) else { return NextPair::AllIsKnown };
             if let Some(pair) = self.next_pair(patch, belief, random) {
-                return Telling::PatchPlanePair(pair);
+                return NextPair::PatchPlanePair(pair);
             }
         }
-        Telling::NothingFits
+        NextPair::NothingFits
     }
 
     fn belief(&self, rotation: Matrix3<f64>) -> ScaleTranslationEstimate {

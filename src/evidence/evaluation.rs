@@ -63,12 +63,12 @@ impl<'a> CandidateEvaluation<'a> {
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let by_chance = ranked.iter().map(|(bits, _)| *bits).collect();
-        let mut contest = CandidateEvaluation { scene, cloud_planes, seen, chance, others: Vec::new(), by_chance };
+        let mut evaluation = CandidateEvaluation { scene, cloud_planes, seen, chance, others: Vec::new(), by_chance };
         // Refinement to the end gains some bits: who is twice the margin behind cannot become a rival.
-        let least = contest.weigh(&answer.city_from_level).bits - 2.0 * limits.verdict.margin_bits();
+        let least = evaluation.weigh(&answer.city_from_level).bits - 2.0 * limits.verdict.margin_bits();
         ranked.retain(|(bits, _)| *bits >= least);
-        contest.others = contest.sharpened(&refiner, &ranked, &place);
-        contest
+        evaluation.others = evaluation.sharpened(&refiner, &ranked, &place);
+        evaluation
     }
 
     /// The evidence of a pose.
@@ -133,15 +133,15 @@ mod tests {
         for made in [Made::four_houses(), Made::photographed()] {
             let scene = wide(&made);
             let truth = answer(&scene, &made, &Offset::default());
-            let contest = CandidateEvaluation::new(&scene, &made.patches, &truth, 1);
-            let bits = contest.weigh(&truth.city_from_level).bits;
+            let evaluation = CandidateEvaluation::new(&scene, &made.patches, &truth, 1);
+            let bits = evaluation.weigh(&truth.city_from_level).bits;
             assert!(bits > 20.0, "{bits}");
-            assert!(!contest.by_chance.is_empty() && contest.by_chance.is_sorted_by(|a, b| a >= b));
-            assert!(contest.by_chance[0] < bits - 10.0, "{bits} {:?}", &contest.by_chance[..3]);
+            assert!(!evaluation.by_chance.is_empty() && evaluation.by_chance.is_sorted_by(|a, b| a >= b));
+            assert!(evaluation.by_chance[0] < bits - 10.0, "{bits} {:?}", &evaluation.by_chance[..3]);
             for shift_m in [[4.0, 0.0, 0.0], [0.0, -6.0, 0.0], [3.0, 3.0, 1.5]] {
                 let other = answer(&scene, &made, &Offset { shift_m, ..Offset::default() });
                 let off_m = made.error(&scene, &other.city_from_level).level_m;
-                assert!(off_m < 1.0 || contest.weigh(&other.city_from_level).bits < bits - 10.0, "{shift_m:?}");
+                assert!(off_m < 1.0 || evaluation.weigh(&other.city_from_level).bits < bits - 10.0, "{shift_m:?}");
             }
         }
     }
@@ -151,13 +151,13 @@ mod tests {
         let made = Made::four_houses();
         let scene = wide(&made);
         let wrong = answer(&scene, &made, &Offset { shift_m: [9.0, -7.0, 0.0], heading_rad: 0.3, ..Offset::default() });
-        let contest = CandidateEvaluation::new(&scene, &made.patches, &wrong, 1);
-        assert!(contest.weigh(&wrong.city_from_level).bits < 10.0);
-        let best = contest.others.iter().map(|other| other.weighed.bits).fold(f64::NEG_INFINITY, f64::max);
-        assert!(best > contest.weigh(&wrong.city_from_level).bits, "{best}");
+        let evaluation = CandidateEvaluation::new(&scene, &made.patches, &wrong, 1);
+        assert!(evaluation.weigh(&wrong.city_from_level).bits < 10.0);
+        let best = evaluation.others.iter().map(|other| other.weighed.bits).fold(f64::NEG_INFINITY, f64::max);
+        assert!(best > evaluation.weigh(&wrong.city_from_level).bits, "{best}");
         let nearest_m = |c: &EvaluatedCandidate| made.error(&scene, &c.candidate.refined.city_from_level).level_m;
-        let found = contest.others.iter().any(|other| nearest_m(other) < 0.1 && other.by_chance);
-        assert!(found, "{:?}", contest.others.iter().map(nearest_m).collect::<Vec<_>>());
+        let found = evaluation.others.iter().any(|other| nearest_m(other) < 0.1 && other.by_chance);
+        assert!(found, "{:?}", evaluation.others.iter().map(nearest_m).collect::<Vec<_>>());
     }
 
     #[test]

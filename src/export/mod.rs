@@ -21,5 +21,5 @@ pub use folder::{Formats, write_alignment, write_placed};
 pub use merge_report::{merge_report, write_merge};
 pub use output::{Discard, Output, OutputKind, Replace};
 pub use output_error::OutputError;
-pub use planes::{Lie, planes_report, write_planes_glb};
+pub use planes::{PlaneAttitude, planes_report, write_planes_glb};
 pub use report::{CityCounts, InputSummary, ReportError, SfmCounts, alignment_report};

@@ -20,20 +20,20 @@ const LEVEL_ABOVE: f64 = 0.9848;
 
 /// How a plane lies; for counting and telling only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lie {
+pub enum PlaneAttitude {
     Wall,
     Slanted,
     LevelUp,
     LevelDown,
 }
 
-impl Lie {
-    pub fn of(normal: &Vector3<f64>) -> Lie {
+impl PlaneAttitude {
+    pub fn of(normal: &Vector3<f64>) -> PlaneAttitude {
         match normal.z {
-            z if z.abs() <= WALL_BELOW => Lie::Wall,
-            z if z >= LEVEL_ABOVE => Lie::LevelUp,
-            z if z <= -LEVEL_ABOVE => Lie::LevelDown,
-            _ => Lie::Slanted,
+            z if z.abs() <= WALL_BELOW => PlaneAttitude::Wall,
+            z if z >= LEVEL_ABOVE => PlaneAttitude::LevelUp,
+            z if z <= -LEVEL_ABOVE => PlaneAttitude::LevelDown,
+            _ => PlaneAttitude::Slanted,
         }
     }
 }
@@ -121,11 +121,11 @@ mod tests {
 
     #[test]
     fn tells_walls_from_floors() {
-        let lie = |x, y, z| Lie::of(&Vector3::new(x, y, z).normalize());
-        assert_eq!(lie(1.0, 0.0, 0.1), Lie::Wall);
-        assert_eq!(lie(0.0, 0.1, 1.0), Lie::LevelUp);
-        assert_eq!(lie(0.0, 0.1, -1.0), Lie::LevelDown);
-        assert_eq!(lie(0.0, 1.0, 1.0), Lie::Slanted);
+        let lie = |x, y, z| PlaneAttitude::of(&Vector3::new(x, y, z).normalize());
+        assert_eq!(lie(1.0, 0.0, 0.1), PlaneAttitude::Wall);
+        assert_eq!(lie(0.0, 0.1, 1.0), PlaneAttitude::LevelUp);
+        assert_eq!(lie(0.0, 0.1, -1.0), PlaneAttitude::LevelDown);
+        assert_eq!(lie(0.0, 1.0, 1.0), PlaneAttitude::Slanted);
     }
 
     #[test]

@@ -15,7 +15,7 @@ mod visibility;
 
 pub use all::Limits;
 pub use evidence::{EvidenceLimits, NullPoseLimits};
-pub use patches::{PatchLimits, UpHabits, UpLimits};
+pub use patches::{PatchLimits, UpErrorModel, UpLimits};
 pub use refinement::{LineSearchLimits, OcclusionLimits, RefinementLimits, StageLimits};
 pub use search::SearchLimits;
 pub use uncertainty::UncertaintyLimits;

@@ -55,9 +55,9 @@ pub struct UpLimits {
     pub cost_of_leaving: f64,
     /// Of walls, floors and roofs. Chosen: walls are built to a third of a degree; streets, yards and flat roofs fall by a few per
     /// cent.
-    pub patches: UpHabits,
+    pub patches: UpErrorModel,
     /// Of cameras. Chosen: hands tilt a camera by a few degrees at random, and by half a degree as a habit.
-    pub cameras: UpHabits,
+    pub cameras: UpErrorModel,
     /// So many observations off by a kernel stand in for what few observations cannot tell of their scatter. Measured on 173 captures.
     pub votes_of_kernel: f64,
     /// Nobody looks up at a building more steeply than this: sine of 50 degrees. Chosen.
@@ -77,8 +77,8 @@ impl Default for UpLimits {
             distinct_sigmas: 3.0,
             comparable_share: 0.6,
             cost_of_leaving: 0.05,
-            patches: UpHabits { kernel_rad: 0.035, shared_across_rad: 0.005, shared_along_rad: 0.02 },
-            cameras: UpHabits { kernel_rad: 0.06, shared_across_rad: 0.01, shared_along_rad: 0.01 },
+            patches: UpErrorModel { kernel_rad: 0.035, shared_across_rad: 0.005, shared_along_rad: 0.02 },
+            cameras: UpErrorModel { kernel_rad: 0.06, shared_across_rad: 0.01, shared_along_rad: 0.01 },
             votes_of_kernel: 1.0,
             steepest_view: 0.77,
             upside_down: 0.2,
@@ -89,7 +89,7 @@ impl Default for UpLimits {
 
 /// How voters for up err, radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UpHabits {
+pub struct UpErrorModel {
     /// The weight of an observation this far off has fallen to a quarter.
     pub kernel_rad: f64,
     /// The error that voters of one direction share, where they ask for an up across that direction.

@@ -11,7 +11,7 @@ pub struct UncertaintyLimits {
     /// Steps in which spreads and unknowns settle in a round. Chosen.
     pub steps: usize,
     /// Width of a piece of surface that is one observation. Chosen: windows and bays repeat every two to four metres.
-    pub piece_m: f64,
+    pub cell_m: f64,
     /// An object that is larger is no building, and is taken apart ... Chosen.
     pub largest_building_m: f64,
     /// Larger objects are cut into squares of this width. Chosen: a building's width.
@@ -23,21 +23,21 @@ pub struct UncertaintyLimits {
     pub least_lever_m: f64,
     /// Planes of a building are one in space within this angle and distance. Measured on wrong poses: what is nearer fits or
     /// misses together.
-    pub same_front_deg: f64,
-    pub same_front_m: f64,
+    pub same_building_plane_deg: f64,
+    pub same_building_plane_m: f64,
     /// One sigma of a building's shift, of a front's offset and tilts, and of a piece, before anything is seen of them. Measured on models of
     /// others: some centimetres where surveyed, two to five decimetres where generalised; between.
     pub building_sigma_m: f64,
-    pub front_sigma_m: f64,
-    pub piece_sigma_m: f64,
+    pub building_plane_sigma_m: f64,
+    pub cell_sigma_m: f64,
     /// Standard deviation of the reconstruction's bending, as a share of its radius. Derived: reconstructions bend by 0.1 to 0.5 % of their extent at
     /// most; two radii, and half of the most as root mean square. Measured: with 0.05 % four rendered scenes, which do not bend, come out better by
     /// a tenth (one by a half); with 0.1 % a generated one that does is `aligned` 1.1 m off at 0.15 m stated.
     pub bending_share: f64,
     /// How many observations these are worth. Chosen: little, so that data decide where there are any.
     pub building_worth: f64,
-    pub front_worth: f64,
-    pub piece_worth: f64,
+    pub building_plane_worth: f64,
+    pub cell_worth: f64,
     pub bending_worth: f64,
     /// One sigma of how far walls stand inside the model's. Measured on LoD1 and LoD2 models drawn from roofs: 0.2 to 0.5 m.
     pub walls_sigma_m: f64,
@@ -66,20 +66,20 @@ impl Default for UncertaintyLimits {
             rounds: 2,
             gate_units: 1.5,
             steps: 8,
-            piece_m: 2.0,
+            cell_m: 2.0,
             largest_building_m: 80.0,
             square_m: 25.0,
             least_walls: 0.1,
             least_lever_m: 5.0,
-            same_front_deg: 8.0,
-            same_front_m: 0.5,
+            same_building_plane_deg: 8.0,
+            same_building_plane_m: 0.5,
             building_sigma_m: 0.1,
-            front_sigma_m: 0.05,
-            piece_sigma_m: 0.03,
+            building_plane_sigma_m: 0.05,
+            cell_sigma_m: 0.03,
             bending_share: 0.0025,
             building_worth: 2.0,
-            front_worth: 2.0,
-            piece_worth: 2.0,
+            building_plane_worth: 2.0,
+            cell_worth: 2.0,
             bending_worth: 5.0,
             walls_sigma_m: 0.3,
             lids_sigma_m: 0.25,

@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::patches::{Patch, Patches};
 use crate::geometry::{Matrix3, Rotation3, Vector3};
-use crate::limits::{UpHabits, UpLimits};
+use crate::limits::{UpErrorModel, UpLimits};
 
 /// One kind of voters.
 pub struct UpSupport {
@@ -19,7 +19,7 @@ pub struct UpSupport {
     weights: Vec<f64>,
     /// How many voters of its own direction each has, itself included.
     fellows: Vec<f64>,
-    habits: UpHabits,
+    habits: UpErrorModel,
     limits: UpLimits,
 }
 
@@ -64,7 +64,7 @@ impl UpSupport {
         UpSupport::new(voters, weights, limits.cameras, limits)
     }
 
-    fn new(voters: Vec<UpObservation>, mut weights: Vec<f64>, habits: UpHabits, limits: &UpLimits) -> UpSupport {
+    fn new(voters: Vec<UpObservation>, mut weights: Vec<f64>, habits: UpErrorModel, limits: &UpLimits) -> UpSupport {
         let total: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|w| *w /= total);
         let fellows = voters.iter().map(|a| voters.iter().map(|b| a.likeness(b)).sum::<f64>().max(1.0)).collect();

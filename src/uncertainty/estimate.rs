@@ -1,11 +1,11 @@
 //! The last estimate of a pose, with all that errs together in the model and the reconstruction as unknowns beside it.
 //!
 //! Unknowns     the pose (7 or 6); how far all walls stand inside the model's and how high its level tops are too high (common to all);
-//!              the reconstruction's bending (26 smooth fields); for each building a shift and a turn; for each front an offset and two tilts
-//! Method       least squares with a prior on every unknown but the pose. The spreads of buildings, fronts, pieces and bending are estimated
+//!              the reconstruction's bending (26 smooth fields); for each building a shift and a turn; for each building plane an offset and two tilts
+//! Method       least squares with a prior on every unknown but the pose. The variances of buildings, building planes, surface cells and bending are estimated
 //!              together with the unknowns (expectation and maximisation, which counts what is not known of an unknown: restricted
-//!              maximum likelihood), each with a prior worth a few observations. Buildings, fronts and pieces have heavy tails
-//!              (Student's t): a rebuilt house, a front that is another's, a piece with a tree before it are outliers as wholes.
+//!              maximum likelihood), each with a prior worth a few observations. Buildings, building planes and surface cells have heavy tails
+//!              (Student's t): a rebuilt house, a building plane that is another's, a surface cell with a tree before it are outliers as wholes.
 //!              Points are put on facets anew after each round
 //! Source       docs/mathematics.md 17.2
 //! Fails when   the pose is in another basin: then it is exactly wrong
@@ -25,7 +25,7 @@ pub struct Estimate {
     pub chart: Chart,
     /// What the data hold of the pose, 1 / m^2 in the chart's unknowns.
     pub information: Matrix7,
-    /// The same without each of the fronts in turn.
+    /// The same without each of the building planes in turn.
     pub without: Vec<Matrix7>,
     pub findings: SystematicErrors,
 }
@@ -48,13 +48,13 @@ pub fn estimate(refiner: &PoseRefiner, pose: &Similarity) -> Estimate {
     let chart = refiner.assess(&[], &pose, 0.0).chart;
     let observations = observations(refiner, &pose, limits.gate_units * scene.gate_unit_m);
     let mut system = System::converged(refiner, &pose, &chart, &observations);
-    system.take_tails_in();
+    system.widen_to_t_variance();
     let left_out = leave_out::by_building(&system);
     Estimate {
         city_from_level: pose,
         chart,
         information: left_out.widened(&system.held().full()),
-        without: leave_out::by_front(&system).iter().map(|m| left_out.widened(m)).collect(),
+        without: leave_out::by_building_plane(&system).iter().map(|m| left_out.widened(m)).collect(),
         findings: SystematicErrors::of(&system),
     }
 }
@@ -107,7 +107,7 @@ mod tests {
         assert!(error.level_m < 0.02 && error.up_m < 0.02, "{error:?}");
         assert!(sigma_m(&estimate) < 0.15, "{}", sigma_m(&estimate));
         assert!(estimate.findings.buildings_m < 0.06, "{:?}", estimate.findings);
-        assert!(estimate.findings.worth_telling(&made.limits.uncertainty).is_empty(), "{:?}", estimate.findings);
+        assert!(estimate.findings.notable(&made.limits.uncertainty).is_empty(), "{:?}", estimate.findings);
     }
 
     #[test]
@@ -162,7 +162,7 @@ mod tests {
         let (estimate, scene) = found(&made);
         let found_m = estimate.findings.walls_inset_m;
         assert!((0.2..0.4).contains(&found_m), "{:?}", estimate.findings);
-        let told = estimate.findings.worth_telling(&made.limits.uncertainty);
+        let told = estimate.findings.notable(&made.limits.uncertainty);
         assert!(told.iter().any(|text| text.contains("inside the model's")), "{told:?}");
         let scale_error = estimate.city_from_level.scale / made.truth(&scene).scale - 1.0;
         assert!(scale_error.abs() < 2e-3, "{scale_error}");

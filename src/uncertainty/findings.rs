@@ -15,7 +15,7 @@ pub struct SystematicErrors {
     pub tops_lower_sigma_m: f64,
     /// Shift of a single building along an axis, one sigma.
     pub buildings_m: f64,
-    /// Offset of a single front, one sigma.
+    /// Offset of a single building plane, one sigma.
     pub fronts_m: f64,
     /// By how much the reconstruction bends, root mean square; 0 where nothing shows it.
     pub bending_m: f64,
@@ -31,14 +31,14 @@ impl SystematicErrors {
             walls_inset_sigma_m: sigma_m(WALLS),
             tops_lower_m: system.found[LIDS],
             tops_lower_sigma_m: sigma_m(LIDS),
-            buildings_m: system.spreads.building[Kind::Built as usize].sqrt(),
-            fronts_m: system.spreads.front[Kind::Built as usize].sqrt(),
+            buildings_m: system.variances.building[Kind::Built as usize].sqrt(),
+            fronts_m: system.variances.building_plane[Kind::Built as usize].sqrt(),
             bending_m: if bending_shows(system) { bends_m } else { 0.0 },
         }
     }
 
     /// In words, what chance does not explain and a user would want to know.
-    pub fn worth_telling(&self, limits: &UncertaintyLimits) -> Vec<String> {
+    pub fn notable(&self, limits: &UncertaintyLimits) -> Vec<String> {
         let shows = |value_m: f64, sigma_m: f64| {
             value_m.abs() > limits.reported_sigmas * sigma_m && value_m.abs() > limits.reported_m
         };
@@ -73,11 +73,11 @@ impl SystematicErrors {
 fn bending_shows(system: &System) -> bool {
     let known = system.known();
     let told = |k: usize| 1.0 - system.covariance[(k, k)] * known[(k, k)];
-    let fields: Vec<usize> = (COMMON..system.common).filter(|&k| told(k) > LEAST_TOLD).collect();
+    let fields: Vec<usize> = (COMMON..system.common).filter(|&k| told(k) > LEAST_SHARE).collect();
     let squares: f64 = fields.iter().map(|&k| system.found[k].powi(2) / (system.covariance[(k, k)] * told(k))).sum();
     let count = fields.len() as f64;
     squares > count + system.limits.reported_sigmas * (2.0 * count).sqrt()
 }
 
 /// A field of which the data tell less than this share says nothing of the bending.
-const LEAST_TOLD: f64 = 0.1;
+const LEAST_SHARE: f64 = 0.1;

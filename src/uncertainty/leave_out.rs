@@ -1,9 +1,9 @@
-//! What the answer does when one building, or one front, is left out.
+//! What the answer does when one building, or one building plane, is left out.
 //!
-//! Question     is the covariance as large as the answers scatter? Does a freedom rest on one front alone?
+//! Question     is the covariance as large as the answers scatter? Does a freedom rest on one building plane alone?
 //! Method       the jackknife by building: the unknowns without each building in turn, and their scatter times the number of buildings less
 //!              one. Where along some direction it is larger than the stated covariance, the information is made smaller by as
-//!              much. It assumes nothing of how a building errs; what all of them share it cannot see. For fronts the information that is left
+//!              much. It assumes nothing of how a building errs; what all of them share it cannot see. For building planes the information that is left
 //!              is told as it is
 //! Fails when   there are few buildings: then their scatter says little, and below a least number it is not asked
 //! Source       Efron (1982), The jackknife, the bootstrap and other resampling plans;
@@ -66,16 +66,17 @@ impl Scatter {
     }
 }
 
-/// The pose's information without each front.
-pub(super) fn by_front(system: &System) -> Vec<Matrix7> {
+/// The pose's information without each building plane.
+pub(super) fn by_building_plane(system: &System) -> Vec<Matrix7> {
     let total = system.total();
-    let without = |part: usize, front: usize| {
+    let without = |part: usize, building_plane: usize| {
         let part = &system.parts[part];
-        let whole: DMatrix<f64> = &part.whole - &part.fronts[front].rest;
+        let whole: DMatrix<f64> = &part.whole - &part.building_planes[building_plane].rest;
         let rest = eliminate(&whole, system.common + 1, part.precision).rest;
         system.of_pose(&(&total - &part.building.rest + rest)).0
     };
-    let fronts = |part: usize| (0..system.parts[part].fronts.len()).map(move |front| (part, front));
-    let all: Vec<(usize, usize)> = (0..system.parts.len()).flat_map(fronts).collect();
-    all.into_par_iter().map(|(part, front)| without(part, front)).collect()
+    let building_planes =
+        |part: usize| (0..system.parts[part].building_planes.len()).map(move |building_plane| (part, building_plane));
+    let all: Vec<(usize, usize)> = (0..system.parts.len()).flat_map(building_planes).collect();
+    all.into_par_iter().map(|(part, building_plane)| without(part, building_plane)).collect()
 }

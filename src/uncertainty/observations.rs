@@ -1,10 +1,10 @@
-//! The points on the city as pieces of surface: pieces of fronts, fronts of buildings.
+//! The points on the city as observations: surface cells of building planes, building planes of buildings.
 //!
 //! Question     what errs together?
 //! Method       a *building* is an object of the model, or where an object is larger than any building (terrain, a model that is one mesh)
-//!              a square of it. Its planes that lie in one plane in space are one *front*. A *piece* of a front is what lies in one cell of
+//!              a square of it. Its planes that lie in one plane in space are one *building plane*. A *surface cell* of a building plane is what lies in one cube of
 //!              a grid as wide as windows repeat: its points are one observation, so that neither their number nor the noise that
-//!              neighbours share can make a front more certain than it is
+//!              neighbours share can make a building plane more certain than it is
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -44,9 +44,9 @@ pub(super) const KINDS: usize = 3;
 /// Planes of one building in one plane in space.
 #[derive(Clone, Debug)]
 pub(super) struct BuildingPlane {
-    pub pieces: Range<usize>,
+    pub cells: Range<usize>,
     pub middle: Point3<f64>,
-    /// In the front, and how far it reaches along them, metres.
+    /// In the building plane, and how far it reaches along them, metres.
     pub axes: [Vector3<f64>; 2],
     pub reach_m: [f64; 2],
     pub is_wall: bool,
@@ -57,7 +57,7 @@ pub(super) struct BuildingPlane {
 
 #[derive(Clone, Debug)]
 pub(super) struct Building {
-    pub fronts: Range<usize>,
+    pub building_planes: Range<usize>,
     pub middle: Point3<f64>,
     /// Where a turn is felt as a shift of the same size, metres.
     pub lever_m: f64,
@@ -65,11 +65,11 @@ pub(super) struct Building {
     pub kind: Kind,
 }
 
-/// What is observed, sorted by buildings and fronts.
+/// What is observed, sorted by buildings and building planes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Observations {
-    pub pieces: Vec<SurfaceCell>,
-    pub fronts: Vec<BuildingPlane>,
+    pub cells: Vec<SurfaceCell>,
+    pub building_planes: Vec<BuildingPlane>,
     pub buildings: Vec<Building>,
     /// Noise of one point across its surface, metres.
     pub point_sigma_m: f64,
@@ -142,50 +142,64 @@ fn building_of(
 impl Observations {
     /// Whether the model is one of boxes: all tops on which points lie are level.
     fn tell_lids(&mut self) {
-        let mut tops = self.fronts.iter().filter(|front| front.kind == Kind::Built && !front.is_wall).peekable();
-        self.has_lids_only = tops.peek().is_some() && tops.all(|front| front.is_top);
+        let mut tops = self
+            .building_planes
+            .iter()
+            .filter(|building_plane| building_plane.kind == Kind::Built && !building_plane.is_wall)
+            .peekable();
+        self.has_lids_only = tops.peek().is_some() && tops.all(|building_plane| building_plane.is_top);
         if self.has_lids_only {
-            self.fronts.iter_mut().filter(|front| front.is_top).for_each(|front| front.kind = Kind::Lid);
+            self.building_planes
+                .iter_mut()
+                .filter(|building_plane| building_plane.is_top)
+                .for_each(|building_plane| building_plane.kind = Kind::Lid);
         }
     }
 
     fn take_building(&mut self, rows: &[Placed], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
-        let first = self.fronts.len();
-        for front in fronts(rows, limits) {
-            self.take_front(&front, has_walls, upright_sin, limits);
+        let first = self.building_planes.len();
+        for building_plane in building_planes(rows, limits) {
+            self.take_building_plane(&building_plane, has_walls, upright_sin, limits);
         }
         let middle = centroid(rows.iter().map(|p| p.row));
         let spread = rows.iter().map(|p| (p.row.place - middle).xy().norm_squared()).sum::<f64>() / rows.len() as f64;
         let lever_m = spread.sqrt().max(limits.least_lever_m);
         let kind = if has_walls { Kind::Built } else { Kind::Ground };
-        self.buildings.push(Building { fronts: first..self.fronts.len(), middle, lever_m, kind });
+        self.buildings.push(Building { building_planes: first..self.building_planes.len(), middle, lever_m, kind });
     }
 
-    fn take_front(&mut self, rows: &[&PointPlaneMatch], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
-        let first = self.pieces.len();
-        let cell = |row: &PointPlaneMatch| row.place.coords.map(|x| (x / limits.piece_m).floor() as i64);
-        let mut sorted: Vec<([i64; 3], &PointPlaneMatch)> = rows.iter().map(|row| (cell(row).into(), *row)).collect();
+    fn take_building_plane(
+        &mut self,
+        rows: &[&PointPlaneMatch],
+        has_walls: bool,
+        upright_sin: f64,
+        limits: &UncertaintyLimits,
+    ) {
+        let first = self.cells.len();
+        let cell_of = |row: &PointPlaneMatch| row.place.coords.map(|x| (x / limits.cell_m).floor() as i64);
+        let mut sorted: Vec<([i64; 3], &PointPlaneMatch)> =
+            rows.iter().map(|row| (cell_of(row).into(), *row)).collect();
         sorted.sort_by_key(|(cell, _)| *cell);
         let (sigma_m, student_dof) = (self.point_sigma_m, limits.student_dof);
-        self.pieces.extend(sorted.chunk_by(|a, b| a.0 == b.0).map(|points| piece(points, sigma_m, student_dof)));
-        let pieces = &self.pieces[first..];
-        let total: f64 = pieces.iter().map(|p| p.points).sum();
+        self.cells.extend(sorted.chunk_by(|a, b| a.0 == b.0).map(|points| cell(points, sigma_m, student_dof)));
+        let cells = &self.cells[first..];
+        let total: f64 = cells.iter().map(|p| p.points).sum();
         let mean = |of: &dyn Fn(&SurfaceCell) -> Vector3<f64>| {
-            pieces.iter().map(|p| of(p) * p.points).sum::<Vector3<f64>>() / total
+            cells.iter().map(|p| of(p) * p.points).sum::<Vector3<f64>>() / total
         };
         let middle = Point3::from(mean(&|p| p.foot.coords));
-        let normal = mean(&|p| p.normal).try_normalize(0.0).unwrap_or(pieces[0].normal);
+        let normal = mean(&|p| p.normal).try_normalize(0.0).unwrap_or(cells[0].normal);
         let along = normal.cross(&Vector3::z()).try_normalize(upright_sin).unwrap_or(Vector3::x());
         let axes = [along, normal.cross(&along)];
         let reach_m = axes.map(|axis| {
-            let reach_m = pieces.iter().map(|p| axis.dot(&(p.foot - middle)).abs()).fold(0.0, f64::max);
-            reach_m.max(limits.piece_m)
+            let reach_m = cells.iter().map(|p| axis.dot(&(p.foot - middle)).abs()).fold(0.0, f64::max);
+            reach_m.max(limits.cell_m)
         });
         let is_wall = normal.z.abs() < upright_sin;
         let is_top = has_walls && normal.z > 1.0 - upright_sin;
         let kind = if has_walls { Kind::Built } else { Kind::Ground };
-        self.fronts.push(BuildingPlane {
-            pieces: first..self.pieces.len(),
+        self.building_planes.push(BuildingPlane {
+            cells: first..self.cells.len(),
             middle,
             axes,
             reach_m,
@@ -196,26 +210,26 @@ impl Observations {
     }
 }
 
-/// Rows of one building by front: planes that lie in one plane in space, the largest first.
-fn fronts<'a>(rows: &[Placed<'a>], limits: &UncertaintyLimits) -> Vec<Vec<&'a PointPlaneMatch>> {
+/// Rows of one building by building plane: planes that lie in one plane in space, the largest first.
+fn building_planes<'a>(rows: &[Placed<'a>], limits: &UncertaintyLimits) -> Vec<Vec<&'a PointPlaneMatch>> {
     let mut planes: Vec<Vec<&PointPlaneMatch>> = rows
         .chunk_by(|a, b| a.row.hit.plane == b.row.hit.plane)
         .map(|plane| plane.iter().map(|p| p.row).collect())
         .collect();
     planes.sort_by(|a, b| b.len().cmp(&a.len()).then(a[0].hit.plane.cmp(&b[0].hit.plane)));
-    let least_cos = limits.same_front_deg.to_radians().cos();
+    let least_cos = limits.same_building_plane_deg.to_radians().cos();
     let mut found: Vec<(Vector3<f64>, Point3<f64>, Vec<&PointPlaneMatch>)> = Vec::new();
     for plane in planes {
         let (normal, middle) = (plane[0].hit.normal, centroid(plane.iter().copied()));
         let same = found
             .iter_mut()
-            .find(|(n, m, _)| n.dot(&normal) > least_cos && n.dot(&(middle - *m)).abs() < limits.same_front_m);
+            .find(|(n, m, _)| n.dot(&normal) > least_cos && n.dot(&(middle - *m)).abs() < limits.same_building_plane_m);
         match same {
-            Some((_, _, front)) => front.extend(plane),
+            Some((_, _, building_plane)) => building_plane.extend(plane),
             None => found.push((normal, middle, plane)),
         }
     }
-    found.into_iter().map(|(_, _, front)| front).collect()
+    found.into_iter().map(|(_, _, building_plane)| building_plane).collect()
 }
 
 fn centroid<'a>(rows: impl Iterator<Item = &'a PointPlaneMatch>) -> Point3<f64> {
@@ -223,12 +237,12 @@ fn centroid<'a>(rows: impl Iterator<Item = &'a PointPlaneMatch>) -> Point3<f64> 
     Point3::from(sum / f64::max(count, 1.0))
 }
 
-/// Rounds in which the points of a piece agree on its distance.
+/// Rounds in which the points of a surface cell agree on its distance.
 const ROUNDS: usize = 3;
 
 /// The points of one cell as one observation, about their median and by Student's t of so many degrees of freedom. Noise stands across
 /// the surface, so the foot is where a row is taken: else a smaller scale would seem to make the noise smaller.
-fn piece(points: &[([i64; 3], &PointPlaneMatch)], sigma_m: f64, student_dof: f64) -> SurfaceCell {
+fn cell(points: &[([i64; 3], &PointPlaneMatch)], sigma_m: f64, student_dof: f64) -> SurfaceCell {
     let mut across: Vec<f64> = points.iter().map(|(_, row)| row.hit.across_m).collect();
     across.sort_by(f64::total_cmp);
     let mut across_m = across[across.len() / 2];

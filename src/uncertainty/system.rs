@@ -1,7 +1,7 @@
-//! The normal equations of the last estimate, and the spreads and weights that make them.
+//! The normal equations of the last estimate, and the variances and weights that make them.
 //!
 //! Question     given points on facets about a pose, what are the unknowns beside it, how far do they scatter, and what is left for the pose?
-//! Method       building planes are eliminated first, then buildings, then what is common to all but the pose; unknowns and spreads are
+//! Method       building planes are eliminated first, then buildings, then what is common to all but the pose; unknowns and variances are
 //!              estimated in turn (expectation and maximisation)
 //! Source       docs/mathematics.md, sections 17.1 and 17.2
 
@@ -25,35 +25,35 @@ pub(super) const LIDS: usize = POSE + 1;
 pub(super) const COMMON: usize = POSE + 2;
 /// Shift and turn of a building.
 const OF_BUILDING: usize = 4;
-/// Offset and tilts of a front.
-const OF_FRONT: usize = 3;
+/// Offset and tilts of a building plane.
+const OF_BUILDING_PLANE: usize = 3;
 
 /// Variances of the random effects, m^2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Variances {
     /// By kind.
     pub building: [f64; KINDS],
-    pub front: [f64; KINDS],
-    pub piece: f64,
+    pub building_plane: [f64; KINDS],
+    pub cell: f64,
     /// Of the bending as a whole.
     pub bending: f64,
 }
 
-/// Normal equations by building and front, with the spreads and weights that make them.
+/// Normal equations by building and building plane, with the variances and weights that make them.
 pub(super) struct System<'a> {
     pub sample: &'a Observations,
     pub limits: &'a UncertaintyLimits,
     pub radius_m: f64,
-    /// One row a piece: unknowns common to all, distance, building, front.
+    /// One row a surface cell: unknowns common to all, distance, building, building plane.
     rows: DMatrix<f64>,
     /// How many unknowns are common to all buildings.
     pub common: usize,
     /// What is known of these beforehand; the start for the pose.
     start: DMatrix<f64>,
-    pub spreads: Variances,
+    pub variances: Variances,
     building_weights: Vec<f64>,
-    front_weights: Vec<f64>,
-    piece_weights: Vec<f64>,
+    building_plane_weights: Vec<f64>,
+    cell_weights: Vec<f64>,
     pub parts: Vec<BuildingSystem>,
     /// The unknowns common to all, and their covariance.
     pub found: DVector<f64>,
@@ -62,10 +62,10 @@ pub(super) struct System<'a> {
 
 /// Normal equations of one building.
 pub(super) struct BuildingSystem {
-    /// Of all its fronts, before the building's own unknowns are taken out: common, distance, building.
+    /// Of all its building planes, before the building's own unknowns are taken out: common, distance, building.
     pub whole: DMatrix<f64>,
     pub building: Eliminated,
-    pub fronts: Vec<Eliminated>,
+    pub building_planes: Vec<Eliminated>,
     pub precision: f64,
 }
 
@@ -84,8 +84,8 @@ impl<'a> System<'a> {
         let of_spread = |sigma: f64| sigma * sigma;
         let first = Variances {
             building: [of_spread(limits.building_sigma_m); KINDS],
-            front: [of_spread(limits.front_sigma_m); KINDS],
-            piece: of_spread(limits.piece_sigma_m),
+            building_plane: [of_spread(limits.building_plane_sigma_m); KINDS],
+            cell: of_spread(limits.cell_sigma_m),
             bending: of_spread(limits.bending_share * chart.radius),
         };
         System {
@@ -95,17 +95,17 @@ impl<'a> System<'a> {
             rows: rows(sample, chart, &bending, common),
             common,
             start: known,
-            spreads: first,
+            variances: first,
             building_weights: vec![1.0; sample.buildings.len()],
-            front_weights: vec![1.0; sample.fronts.len()],
-            piece_weights: vec![1.0; sample.pieces.len()],
+            building_plane_weights: vec![1.0; sample.building_planes.len()],
+            cell_weights: vec![1.0; sample.cells.len()],
             parts: Vec::new(),
             found: DVector::zeros(common),
             covariance: DMatrix::zeros(common, common),
         }
     }
 
-    /// With unknowns and spreads estimated in turn.
+    /// With unknowns and variances estimated in turn.
     pub fn converged(
         refiner: &PoseRefiner<'a>,
         pose: &Similarity,
@@ -119,20 +119,24 @@ impl<'a> System<'a> {
             System::new(sample, chart, &places, &scene.prior.information(chart), &scene.limits.uncertainty);
         for _ in 0..system.limits.steps {
             system.solve();
-            system.learn();
+            system.update_variances();
         }
         system.solve();
         system
     }
 
     /// Multiplies variances by nu / (nu - 2), the variance of Student's t with nu degrees of freedom.
-    pub fn take_tails_in(&mut self) {
+    pub fn widen_to_t_variance(&mut self) {
         let student_dof = self.limits.student_dof;
         let times = student_dof / (student_dof - 2.0);
-        let Variances { building, front, piece, bending } = self.spreads;
+        let Variances { building, building_plane, cell, bending } = self.variances;
         let wider = |spread: f64| spread * times;
-        self.spreads =
-            Variances { building: building.map(wider), front: front.map(wider), piece: wider(piece), bending };
+        self.variances = Variances {
+            building: building.map(wider),
+            building_plane: building_plane.map(wider),
+            cell: wider(cell),
+            bending,
+        };
         self.solve();
     }
 
@@ -147,34 +151,35 @@ impl<'a> System<'a> {
     fn part(&self, building: usize) -> BuildingSystem {
         let keep = self.common + 1 + OF_BUILDING;
         let of_building = &self.sample.buildings[building];
-        let fronts: Vec<Eliminated> = of_building
-            .fronts
+        let building_planes: Vec<Eliminated> = of_building
+            .building_planes
             .clone()
-            .map(|front| {
-                let precision = self.front_weights[front] / self.spreads.front[self.sample.fronts[front].kind as usize];
-                eliminate(&self.equations_of_front(front), keep, precision)
+            .map(|building_plane| {
+                let precision = self.building_plane_weights[building_plane]
+                    / self.variances.building_plane[self.sample.building_planes[building_plane].kind as usize];
+                eliminate(&self.equations_of_building_plane(building_plane), keep, precision)
             })
             .collect();
         let mut whole = DMatrix::zeros(keep, keep);
-        fronts.iter().for_each(|front| whole += &front.rest);
-        let precision = self.building_weights[building] / self.spreads.building[of_building.kind as usize];
+        building_planes.iter().for_each(|building_plane| whole += &building_plane.rest);
+        let precision = self.building_weights[building] / self.variances.building[of_building.kind as usize];
         let building = eliminate(&whole, self.common + 1, precision);
-        BuildingSystem { whole, building, fronts, precision }
+        BuildingSystem { whole, building, building_planes, precision }
     }
 
-    fn equations_of_front(&self, front: usize) -> DMatrix<f64> {
+    fn equations_of_building_plane(&self, building_plane: usize) -> DMatrix<f64> {
         let size = self.rows.nrows();
         let mut sum = DMatrix::zeros(size, size);
-        for piece in self.sample.fronts[front].pieces.clone() {
-            let row = self.rows.column(piece);
-            sum.syger(self.piece_weights[piece] / self.variance_of_piece(piece), &row, &row, 1.0);
+        for cell in self.sample.building_planes[building_plane].cells.clone() {
+            let row = self.rows.column(cell);
+            sum.syger(self.cell_weights[cell] / self.variance_of_cell(cell), &row, &row, 1.0);
         }
         sum.fill_upper_triangle_with_lower_triangle();
         sum
     }
 
-    fn variance_of_piece(&self, piece: usize) -> f64 {
-        self.spreads.piece + self.sample.point_sigma_m.powi(2) / self.sample.pieces[piece].points
+    fn variance_of_cell(&self, cell: usize) -> f64 {
+        self.variances.cell + self.sample.point_sigma_m.powi(2) / self.sample.cells[cell].points
     }
 
     /// All buildings together: common unknowns, distance.
@@ -191,7 +196,7 @@ impl<'a> System<'a> {
         let lids_sigma_m = if self.sample.has_lids_only { self.limits.lids_sigma_m } else { self.limits.roofs_sigma_m };
         known[(LIDS, LIDS)] = lids_sigma_m.powi(-2);
         let fields = self.common - COMMON;
-        (COMMON..self.common).for_each(|k| known[(k, k)] = fields as f64 / self.spreads.bending);
+        (COMMON..self.common).for_each(|k| known[(k, k)] = fields as f64 / self.variances.bending);
         known
     }
 
@@ -215,7 +220,7 @@ impl<'a> System<'a> {
     }
 
     /// Variances and weights by what the unknowns turn out to be, and by how well these are known.
-    fn learn(&mut self) {
+    fn update_variances(&mut self) {
         let (limits, sample) = (self.limits, self.sample);
         let of_kind = |count: usize, first_m: f64, worth: f64| Squares {
             sum: worth * first_m * first_m,
@@ -223,21 +228,23 @@ impl<'a> System<'a> {
             each: count as f64,
         };
         let mut of_buildings = [of_kind(OF_BUILDING, limits.building_sigma_m, limits.building_worth); KINDS];
-        let mut of_fronts = [of_kind(OF_FRONT, limits.front_sigma_m, limits.front_worth); KINDS];
-        let mut of_pieces = of_kind(1, limits.piece_sigma_m, limits.piece_worth);
+        let mut of_building_planes =
+            [of_kind(OF_BUILDING_PLANE, limits.building_plane_sigma_m, limits.building_plane_worth); KINDS];
+        let mut of_cells = of_kind(1, limits.cell_sigma_m, limits.cell_worth);
         for (b, of_building) in sample.buildings.iter().enumerate() {
             let (building, covariance, squared) = self.building_found(b);
             let kind = of_building.kind as usize;
-            self.building_weights[b] = weight(squared / self.spreads.building[kind], OF_BUILDING, limits.student_dof);
+            self.building_weights[b] = weight(squared / self.variances.building[kind], OF_BUILDING, limits.student_dof);
             of_buildings[kind].add(self.building_weights[b] * squared);
-            for (k, front) in of_building.fronts.clone().enumerate() {
-                let (offsets, squared) = self.front_found(b, k, &building, &covariance);
-                let kind = sample.fronts[front].kind as usize;
-                self.front_weights[front] = weight(squared / self.spreads.front[kind], OF_FRONT, limits.student_dof);
-                of_fronts[kind].add(self.front_weights[front] * squared);
-                for piece in sample.fronts[front].pieces.clone() {
-                    let squared = self.learn_piece(piece, &building, &offsets);
-                    of_pieces.add(squared);
+            for (k, building_plane) in of_building.building_planes.clone().enumerate() {
+                let (offsets, squared) = self.building_plane_found(b, k, &building, &covariance);
+                let kind = sample.building_planes[building_plane].kind as usize;
+                self.building_plane_weights[building_plane] =
+                    weight(squared / self.variances.building_plane[kind], OF_BUILDING_PLANE, limits.student_dof);
+                of_building_planes[kind].add(self.building_plane_weights[building_plane] * squared);
+                for cell in sample.building_planes[building_plane].cells.clone() {
+                    let squared = self.update_cell(cell, &building, &offsets);
+                    of_cells.add(squared);
                 }
             }
         }
@@ -245,10 +252,10 @@ impl<'a> System<'a> {
         let mut of_bending =
             of_kind(1, limits.bending_share * self.radius_m / (fields.max(1) as f64).sqrt(), limits.bending_worth);
         (COMMON..self.common).for_each(|k| of_bending.add(self.found[k].powi(2) + self.covariance[(k, k)]));
-        self.spreads = Variances {
+        self.variances = Variances {
             building: of_buildings.map(|squares| squares.mean()),
-            front: of_fronts.map(|squares| squares.mean()),
-            piece: of_pieces.mean(),
+            building_plane: of_building_planes.map(|squares| squares.mean()),
+            cell: of_cells.mean(),
             bending: of_bending.mean() * fields.max(1) as f64,
         };
     }
@@ -271,9 +278,15 @@ impl<'a> System<'a> {
         (found, joint, squared)
     }
 
-    /// A front's offset and tilts, and their expected square.
-    fn front_found(&self, b: usize, k: usize, building: &DVector<f64>, joint: &DMatrix<f64>) -> (DVector<f64>, f64) {
-        let (n, own) = (self.common, &self.parts[b].fronts[k]);
+    /// A building plane's offset and tilts, and their expected square.
+    fn building_plane_found(
+        &self,
+        b: usize,
+        k: usize,
+        building: &DVector<f64>,
+        joint: &DMatrix<f64>,
+    ) -> (DVector<f64>, f64) {
+        let (n, own) = (self.common, &self.parts[b].building_planes[k]);
         // Common unknowns, then the building's; the distance's row stands between.
         let others: Vec<usize> = (0..n).chain(n + 1..n + 1 + OF_BUILDING).collect();
         let coupling = own.coupling.select_rows(&others);
@@ -285,18 +298,18 @@ impl<'a> System<'a> {
         (found, squared)
     }
 
-    /// The expected square of a piece's own error.
-    fn learn_piece(&mut self, piece: usize, building: &DVector<f64>, offsets: &DVector<f64>) -> f64 {
-        let row = self.rows.column(piece);
+    /// The expected square of a surface cell's own error.
+    fn update_cell(&mut self, cell: usize, building: &DVector<f64>, offsets: &DVector<f64>) -> f64 {
+        let row = self.rows.column(cell);
         let n = self.common;
         let off_m = row[n]
             + row.rows(0, n).dot(&self.found)
             + row.rows(n + 1, OF_BUILDING).dot(building)
-            + row.rows(n + 1 + OF_BUILDING, OF_FRONT).dot(offsets);
-        let variance = self.variance_of_piece(piece);
-        self.piece_weights[piece] = weight(off_m * off_m / variance, 1, self.limits.student_dof);
-        let share = self.spreads.piece / variance;
-        self.piece_weights[piece] * (share * off_m).powi(2) + self.spreads.piece * (1.0 - share)
+            + row.rows(n + 1 + OF_BUILDING, OF_BUILDING_PLANE).dot(offsets);
+        let variance = self.variance_of_cell(cell);
+        self.cell_weights[cell] = weight(off_m * off_m / variance, 1, self.limits.student_dof);
+        let share = self.variances.cell / variance;
+        self.cell_weights[cell] * (share * off_m).powi(2) + self.variances.cell * (1.0 - share)
     }
 }
 
@@ -326,24 +339,26 @@ fn weight(squared: f64, parts: usize, student_dof: f64) -> f64 {
 }
 
 fn rows(sample: &Observations, chart: &Chart, bending: &Bending, common: usize) -> DMatrix<f64> {
-    let mut rows = DMatrix::zeros(common + 1 + OF_BUILDING + OF_FRONT, sample.pieces.len());
+    let mut rows = DMatrix::zeros(common + 1 + OF_BUILDING + OF_BUILDING_PLANE, sample.cells.len());
     for building in &sample.buildings {
-        for front in &sample.fronts[building.fronts.clone()] {
-            for k in front.pieces.clone() {
-                let (piece, mut row) = (&sample.pieces[k], rows.column_mut(k));
-                row.rows_mut(0, POSE).copy_from(&chart.row(&piece.foot, &piece.normal));
+        for building_plane in &sample.building_planes[building.building_planes.clone()] {
+            for k in building_plane.cells.clone() {
+                let (cell, mut row) = (&sample.cells[k], rows.column_mut(k));
+                row.rows_mut(0, POSE).copy_from(&chart.row(&cell.foot, &cell.normal));
                 if chart.motion == Motion::Rigid {
                     row[POSE - 1] = 0.0;
                 }
-                row[WALLS] = f64::from(u8::from(front.is_wall));
-                row[LIDS] = f64::from(u8::from(front.is_top));
-                let bends = bending.at(&piece.foot, chart);
-                bends.iter().enumerate().for_each(|(b, bend)| row[COMMON + b] = bend.dot(&piece.normal));
-                row[common] = piece.across_m;
-                let (n, arm) = (piece.normal, piece.foot - building.middle);
+                row[WALLS] = f64::from(u8::from(building_plane.is_wall));
+                row[LIDS] = f64::from(u8::from(building_plane.is_top));
+                let bends = bending.at(&cell.foot, chart);
+                bends.iter().enumerate().for_each(|(b, bend)| row[COMMON + b] = bend.dot(&cell.normal));
+                row[common] = cell.across_m;
+                let (n, arm) = (cell.normal, cell.foot - building.middle);
                 let turn = (arm.x * n.y - arm.y * n.x) / building.lever_m;
                 [n.x, n.y, n.z, turn].iter().enumerate().for_each(|(b, value)| row[common + 1 + b] = *value);
-                let along = |a: usize| front.axes[a].dot(&(piece.foot - front.middle)) / front.reach_m[a];
+                let along = |a: usize| {
+                    building_plane.axes[a].dot(&(cell.foot - building_plane.middle)) / building_plane.reach_m[a]
+                };
                 [1.0, along(0), along(1)]
                     .iter()
                     .enumerate()

@@ -11,7 +11,7 @@ use super::graph::Network;
 use crate::geometry::Similarity;
 use crate::merging::limits::MergeLimits;
 use crate::merging::outcome::{Edge, EdgeSource};
-use crate::merging::pairwise::{Opinion, OwnFit, Pair, PairFault, PlaneEvidence, settle_planes, whole_planes};
+use crate::merging::pairwise::{OwnFit, Pair, PairDecision, PairFault, PlaneEvidence, settle_planes, whole_planes};
 use crate::merging::prepared::PreparedPart;
 
 /// Pairs of placed parts that overlap in the city and that no edge joins yet.
@@ -43,7 +43,7 @@ fn overlap(
     let used = off < limits.network.overlap_floors * floor;
     let fault = (!used).then_some(PairFault::SurfacesApart { off: off / radius });
     let reason = fault.as_ref().map(ToString::to_string);
-    let opinion = fault.map_or(Opinion::Together, Opinion::Open);
+    let opinion = fault.map_or(PairDecision::Accepted, PairDecision::Open);
     let edge = Edge {
         a,
         b,

@@ -7,7 +7,7 @@ use super::freedoms::{in_a_parts_frame, in_the_city};
 use super::graph::Network;
 use crate::geometry::Similarity;
 use crate::merging::outcome::{PartPlace, PartSupport};
-use crate::merging::pairwise::{Opinion, Pair};
+use crate::merging::pairwise::{Pair, PairDecision};
 use crate::robust::{Chart, Matrix7};
 use crate::verdict::Freedom;
 
@@ -51,7 +51,7 @@ fn loose_freedoms(part: usize, network: &Network<'_>, candidate: Option<Similari
         return anchor.freedoms.clone();
     }
     let Some(pose) = candidate else { return Vec::new() };
-    let is_open = |l: &&Pair| matches!(l.opinion, Opinion::Open(_)) && l.edge.a.max(l.edge.b) == part;
+    let is_open = |l: &&Pair| matches!(l.opinion, PairDecision::Open(_)) && l.edge.a.max(l.edge.b) == part;
     let Some((pair, fit)) = network.pairs.iter().find(is_open).and_then(|l| Some((l, l.fit.as_ref()?))) else {
         return Vec::new();
     };
@@ -75,7 +75,7 @@ fn turned(information: &Matrix7, to_from: &Similarity) -> Matrix7 {
 fn candidates(network: &Network<'_>, poses: &[Option<Similarity>]) -> Vec<Option<Similarity>> {
     let anchor = |p: usize| network.parts[p].part.anchor.as_ref().map(|a| a.common_from_part);
     let mut found: Vec<Option<Similarity>> = (0..poses.len()).map(|p| poses[p].map_or(anchor(p), |_| None)).collect();
-    for pair in network.pairs.iter().filter(|l| matches!(l.opinion, Opinion::Open(_))) {
+    for pair in network.pairs.iter().filter(|l| matches!(l.opinion, PairDecision::Open(_))) {
         let (Some(fit), a, b) = (&pair.fit, pair.edge.a, pair.edge.b) else { continue };
         let (first, second, second_from_first) = match a < b {
             true => (a, b, fit.a_from_b),

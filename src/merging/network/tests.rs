@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
 use crate::merging::outcome::EdgeSource;
-use crate::merging::pairwise::{Fit, Opinion};
+use crate::merging::pairwise::{Fit, PairDecision};
 use crate::merging::part::{Anchor, Part};
 use crate::reconstruction::Reconstruction;
 use crate::robust::{Chart, Matrix7};
@@ -49,7 +49,7 @@ fn pair(a: usize, b: usize, inliers: usize, error: &Similarity) -> Pair {
         inliers: vec![true; inliers],
         rms: 0.01,
     };
-    Pair { edge, fit: Some(fit), opinion: Opinion::Together }
+    Pair { edge, fit: Some(fit), opinion: PairDecision::Accepted }
 }
 
 fn shifted(along_x: f64) -> Similarity {

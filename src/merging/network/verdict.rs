@@ -2,7 +2,7 @@
 
 use super::graph::Network;
 use crate::merging::outcome::{EdgeSource, MergeVerdict, PartPlace};
-use crate::merging::pairwise::{Opinion, Pair};
+use crate::merging::pairwise::{Pair, PairDecision};
 use crate::verdict::Verdict;
 
 /// The verdict, and one sentence with figures.
@@ -42,7 +42,7 @@ pub(super) fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerd
     if in_city(Verdict::Ambiguous) {
         return (MergeVerdict::Ambiguous, format!("parts stand in the city in more than one way: {}", names()));
     }
-    let open = network.pairs.iter().any(|l| matches!(l.opinion, Opinion::Open(_)));
+    let open = network.pairs.iter().any(|l| matches!(l.opinion, PairDecision::Open(_)));
     if open || in_city(Verdict::Undetermined) {
         return (MergeVerdict::Undetermined, format!("how the parts stand to each other is not fixed: {}", names()));
     }

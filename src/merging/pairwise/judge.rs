@@ -1,7 +1,7 @@
 //! Whether two parts belong together at all: tests that are independent of the estimate, each with its reason.
 //!
 //! Input        what a kind of evidence answers ([`Testimony`]), and the poses of the shared photographs
-//! Output       an [`Opinion`]
+//! Output       a [`PairDecision`]
 //! Method       both parts must be sound; there must be enough that chance does not explain; a similarity must be agreed on, and no mirror
 //!              image or stretch explain more; the shared cameras must stand where it puts them; and every freedom must be held
 
@@ -14,13 +14,13 @@ use crate::merging::limits::{MergeLimits, PairJudgeLimits};
 
 /// What is thought of a pair of parts.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::merging) enum Opinion {
+pub(in crate::merging) enum PairDecision {
     /// They are parts of one place, and how they stand is fixed.
-    Together,
+    Accepted,
     /// They may be, but how they stand is not fixed.
     Open(PairFault),
     /// They are not, for all that is known.
-    Apart(PairFault),
+    Rejected(PairFault),
 }
 
 /// What a kind of evidence answers to the judge.
@@ -29,13 +29,13 @@ pub(super) trait Testimony {
     fn words(&self) -> Words;
 
     /// Why it cannot be heard.
-    fn lacking(&self) -> Option<Opinion>;
+    fn lacking(&self) -> Option<PairDecision>;
 
     /// The similarity that it found, or why there is none.
     fn fit(&self) -> Result<&Fit, PairFault>;
 
     /// Why it does not agree with that similarity.
-    fn refused(&self, fit: &Fit) -> Option<Opinion>;
+    fn refused(&self, fit: &Fit) -> Option<PairDecision>;
 
     /// What an affine map would explain; `None` where nothing is known of it.
     fn stretch(&self, fit: &Fit) -> Option<Stretch>;
@@ -60,42 +60,42 @@ pub(super) fn judge(
     evidence: &TrackEvidence,
     names: [&str; 2],
     limits: &MergeLimits,
-) -> Opinion {
+) -> PairDecision {
     if let Some(opinion) = unsound(evidence, names, &limits.judge).or_else(|| testimony.lacking()) {
         return opinion;
     }
     let fit = match testimony.fit() {
         Ok(fit) => fit,
-        Err(fault) => return Opinion::Apart(fault),
+        Err(fault) => return PairDecision::Rejected(fault),
     };
     testimony
         .refused(fit)
         .or_else(|| stretched(&testimony.stretch(fit)?, &limits.judge))
         .or_else(|| cameras(evidence, fit, testimony.words().holds, &limits.judge))
         .or_else(|| freedoms(evidence, fit, testimony.words().counted, &limits.judge))
-        .unwrap_or(Opinion::Together)
+        .unwrap_or(PairDecision::Accepted)
 }
 
-fn unsound(evidence: &TrackEvidence, names: [&str; 2], limits: &PairJudgeLimits) -> Option<Opinion> {
+fn unsound(evidence: &TrackEvidence, names: [&str; 2], limits: &PairJudgeLimits) -> Option<PairDecision> {
     let [of_a, of_b] = evidence.own_error;
     let (part, error_share) = if of_a >= of_b { (names[0].to_owned(), of_a) } else { (names[1].to_owned(), of_b) };
-    (error_share > limits.own_error_share).then_some(Opinion::Apart(PairFault::Unsound { part, error_share }))
+    (error_share > limits.own_error_share).then_some(PairDecision::Rejected(PairFault::Unsound { part, error_share }))
 }
 
 /// Refused where the mirror image of a part explains so many times more.
-pub(super) fn mirrored(gain: f64, limits: &PairJudgeLimits) -> Option<Opinion> {
-    (gain > limits.mirror_gain).then_some(Opinion::Apart(PairFault::Mirrored))
+pub(super) fn mirrored(gain: f64, limits: &PairJudgeLimits) -> Option<PairDecision> {
+    (gain > limits.mirror_gain).then_some(PairDecision::Rejected(PairFault::Mirrored))
 }
 
 /// Refused where an affine map explains what a similarity does not.
-pub(super) fn stretched(stretch: &Stretch, limits: &PairJudgeLimits) -> Option<Opinion> {
+pub(super) fn stretched(stretch: &Stretch, limits: &PairJudgeLimits) -> Option<PairDecision> {
     let Stretch { ratio, rest } = *stretch;
     let is_stretched = ratio > limits.most_stretch && rest < limits.stretch_rest;
-    is_stretched.then_some(Opinion::Apart(PairFault::Stretched { ratio }))
+    is_stretched.then_some(PairDecision::Rejected(PairFault::Stretched { ratio }))
 }
 
 /// Refused where even the nearest of the shared cameras stands elsewhere than the similarity puts it.
-fn cameras(evidence: &TrackEvidence, fit: &Fit, holds: &'static str, limits: &PairJudgeLimits) -> Option<Opinion> {
+fn cameras(evidence: &TrackEvidence, fit: &Fit, holds: &'static str, limits: &PairJudgeLimits) -> Option<PairDecision> {
     let off = |camera: &CameraPair| {
         let turn_deg = (fit.a_from_b.rotation * camera.a_from_b_rotation.inverse()).angle().to_degrees();
         let off = fit.a_from_b.apply(&camera.center_b) - camera.center_a;
@@ -107,14 +107,19 @@ fn cameras(evidence: &TrackEvidence, fit: &Fit, holds: &'static str, limits: &Pa
     let nearest = evidence.cameras.iter().map(off).min_by(|one, other| sum(one).total_cmp(&sum(other)));
     let (turn_deg, shift) = nearest?;
     let is_elsewhere = turn_deg > limits.most_turn_deg || shift > 1.0;
-    is_elsewhere.then_some(Opinion::Apart(PairFault::CamerasElsewhere { holds, turn_deg, shift }))
+    is_elsewhere.then_some(PairDecision::Rejected(PairFault::CamerasElsewhere { holds, turn_deg, shift }))
 }
 
 /// Open where the loosest freedom is not held.
-fn freedoms(evidence: &TrackEvidence, fit: &Fit, counted: &'static str, limits: &PairJudgeLimits) -> Option<Opinion> {
+fn freedoms(
+    evidence: &TrackEvidence,
+    fit: &Fit,
+    counted: &'static str,
+    limits: &PairJudgeLimits,
+) -> Option<PairDecision> {
     let weakest = SymmetricEigen::new(fit.information).eigenvalues.min();
     let sigma_a = if weakest > 0.0 { weakest.sqrt().recip() } else { f64::INFINITY };
     let sigma = sigma_a / evidence.radius_a;
     let inliers = fit.inlier_count();
-    (sigma > limits.determined).then_some(Opinion::Open(PairFault::FreedomOpen { inliers, counted, sigma }))
+    (sigma > limits.determined).then_some(PairDecision::Open(PairFault::FreedomOpen { inliers, counted, sigma }))
 }

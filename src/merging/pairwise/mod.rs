@@ -2,7 +2,7 @@
 //!
 //! Question     which similarity carries one part onto the other, how far is it known, and is it to be believed?
 //! Input        two prepared parts that share photographs
-//! Output       [`Pair`]: an edge for the report, a [`Fit`] with its information, an [`Opinion`]
+//! Output       [`Pair`]: an edge for the report, a [`Fit`] with its information, a [`PairDecision`]
 //! Method       `track_evidence`, `superpixel_planes` and `whole_planes` gather what the parts share. Point pairs, cameras and planes are
 //!              rows of one least squares (`rows`: `point_rows`, `camera_rows`, `plane_rows`; `fit`), found without a start
 //!              by `track_fit` and
@@ -40,7 +40,7 @@ pub(super) use fault::PairFault;
 #[cfg(test)]
 pub(super) use fit::Fit;
 pub(super) use fit::OwnFit;
-pub(super) use judge::Opinion;
+pub(super) use judge::PairDecision;
 pub use pair::EvidenceChoice;
 pub(super) use pair::{Comparison, Pair};
 pub(super) use plane_rows::settle_planes;

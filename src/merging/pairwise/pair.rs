@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::fit::{Fit, OwnFit};
 use super::joint::Tracks;
-use super::judge::{Opinion, judge};
+use super::judge::{PairDecision, judge};
 use super::plane_search::fit_planes;
 use super::plane_testimony::PlaneTestimony;
 use super::planes::PlaneEvidence;
@@ -34,7 +34,7 @@ pub(in crate::merging) struct Pair {
     /// What is told of it.
     pub edge: Edge,
     pub fit: Option<Fit>,
-    pub opinion: Opinion,
+    pub opinion: PairDecision,
 }
 
 /// What is compared, and how.
@@ -108,10 +108,10 @@ impl Comparison<'_> {
             pairs: found.pairs,
             inliers: found.fit.as_ref().map_or(0, Fit::inlier_count),
             rms: found.fit.as_ref().map_or(0.0, |f| f.rms),
-            used: found.opinion == Opinion::Together,
+            used: found.opinion == PairDecision::Accepted,
             reason: match &found.opinion {
-                Opinion::Together => (!found.notes.is_empty()).then(|| found.notes.join("; ")),
-                Opinion::Open(fault) | Opinion::Apart(fault) => Some(fault.to_string()),
+                PairDecision::Accepted => (!found.notes.is_empty()).then(|| found.notes.join("; ")),
+                PairDecision::Open(fault) | PairDecision::Rejected(fault) => Some(fault.to_string()),
             },
         };
         Pair { edge, fit: found.fit, opinion: found.opinion }
@@ -131,7 +131,7 @@ impl Comparison<'_> {
         let opinion = judge(&testimony, evidence, parts.map(PreparedPart::name), limits);
         let contradiction = joint.as_ref().and_then(|j| j.contradiction.clone());
         let opinion = match (opinion, contradiction) {
-            (Opinion::Together, Some(contradiction)) => Opinion::Open(contradiction),
+            (PairDecision::Accepted, Some(contradiction)) => PairDecision::Open(contradiction),
             (opinion, _) => opinion,
         };
         let cameras_used = by_tracks.iter().flat_map(|t| &t.cameras_used);
@@ -161,7 +161,7 @@ struct Found {
     source: EdgeSource,
     pairs: usize,
     fit: Option<Fit>,
-    opinion: Opinion,
+    opinion: PairDecision,
     /// What is to be said although the parts are joined.
     notes: Vec<String>,
 }

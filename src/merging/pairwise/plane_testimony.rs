@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::fault::PairFault;
 use super::fit::{Fit, OwnFit};
-use super::judge::{Opinion, Stretch, Testimony, Words, mirrored};
+use super::judge::{PairDecision, Stretch, Testimony, Words, mirrored};
 use super::on_planes::{share_on_planes, too_few};
 use super::plane_search::fit_planes;
 use super::planes::{Measured, PlaneEvidence};
@@ -24,10 +24,10 @@ impl Testimony for PlaneTestimony<'_> {
         Words { holds: "planes of the superpixels", counted: "points on planes" }
     }
 
-    fn lacking(&self) -> Option<Opinion> {
+    fn lacking(&self) -> Option<PairDecision> {
         match self.planes {
-            None => Some(Opinion::Open(PairFault::NoSuperpixels)),
-            Some(planes) => too_few(planes, &self.limits.judge).map(Opinion::Open),
+            None => Some(PairDecision::Open(PairFault::NoSuperpixels)),
+            Some(planes) => too_few(planes, &self.limits.judge).map(PairDecision::Open),
         }
     }
 
@@ -36,7 +36,7 @@ impl Testimony for PlaneTestimony<'_> {
     }
 
     /// Points lie on their planes, better than in the mirror and better than chance.
-    fn refused(&self, fit: &Fit) -> Option<Opinion> {
+    fn refused(&self, fit: &Fit) -> Option<PairDecision> {
         let (planes, limits) = (self.planes?, &self.limits.judge);
         let share = share_on_planes(planes, &fit.a_from_b, self.limits.sources.on_plane);
         if let Some(opinion) = mirrored(self.best_share(&planes.mirrored()) / share, limits) {
@@ -44,7 +44,7 @@ impl Testimony for PlaneTestimony<'_> {
         }
         let by_chance = self.best_share(&planes.shuffled());
         let is_chance = share < limits.agreeing_share || share < limits.chance_factor * by_chance;
-        is_chance.then_some(Opinion::Apart(PairFault::FewPointsOnPlanes { share, by_chance }))
+        is_chance.then_some(PairDecision::Rejected(PairFault::FewPointsOnPlanes { share, by_chance }))
     }
 
     /// The affine map x + M y + t, y = (x - c) / rho, that lays the points best on their planes.
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
     use crate::geometry::Point3;
 
-    fn opinion(planes: &PlaneEvidence) -> Option<Opinion> {
+    fn opinion(planes: &PlaneEvidence) -> Option<PairDecision> {
         let limits = MergeLimits::default();
         let found = fit_planes(planes, &limits, 5).unwrap();
         let testimony = PlaneTestimony { planes: Some(planes), found: Some(&found), limits: &limits, seed: 5 };
@@ -115,14 +115,14 @@ mod tests {
     #[test]
     fn a_mirrored_part_is_refused() {
         let told = opinion(&scene(0.003, |x| Point3::new(-x.x, x.y, x.z)));
-        assert!(matches!(&told, Some(Opinion::Apart(PairFault::Mirrored))), "{told:?}");
+        assert!(matches!(&told, Some(PairDecision::Rejected(PairFault::Mirrored))), "{told:?}");
     }
 
     #[test]
     fn a_stretched_part_is_refused() {
         let told = opinion(&scene(0.003, |x| Point3::new(x.x, x.y, 1.12 * x.z)));
         assert!(
-            matches!(&told, Some(Opinion::Apart(PairFault::Stretched { ratio })) if (1.06..1.2).contains(ratio)),
+            matches!(&told, Some(PairDecision::Rejected(PairFault::Stretched { ratio })) if (1.06..1.2).contains(ratio)),
             "{told:?}"
         );
     }
@@ -130,6 +130,6 @@ mod tests {
     #[test]
     fn superpixels_of_another_photograph_are_refused() {
         let told = opinion(&scene(0.003, |x| *x).shuffled());
-        assert!(matches!(&told, Some(Opinion::Apart(PairFault::FewPointsOnPlanes { .. }))), "{told:?}");
+        assert!(matches!(&told, Some(PairDecision::Rejected(PairFault::FewPointsOnPlanes { .. }))), "{told:?}");
     }
 }

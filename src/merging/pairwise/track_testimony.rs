@@ -2,7 +2,7 @@
 
 use super::fault::PairFault;
 use super::fit::Fit;
-use super::judge::{Opinion, Stretch, Testimony, Words, mirrored};
+use super::judge::{PairDecision, Stretch, Testimony, Words, mirrored};
 use super::point_rows::PointRows;
 use super::track_evidence::{PointPair, TrackEvidence};
 use super::track_fit::consensus;
@@ -22,28 +22,28 @@ impl Testimony for TrackTestimony<'_> {
         Words { holds: "point pairs", counted: "point pairs" }
     }
 
-    fn lacking(&self) -> Option<Opinion> {
+    fn lacking(&self) -> Option<PairDecision> {
         let limits = &self.limits.judge;
         let TrackEvidence { chance, fewer_keypoints, ref pairs, ref photos, .. } = *self.evidence;
         let (pairs, photos) = (pairs.len(), photos.len());
         let needed = (limits.chance_factor * chance).max(chance + limits.chance_sigmas * chance.sqrt());
         let is_chance = pairs as f64 <= needed || pairs < limits.fewest_pairs;
         let fault = PairFault::OtherPhotographs { photos, pairs, keypoints: fewer_keypoints, chance };
-        is_chance.then_some(Opinion::Apart(fault))
+        is_chance.then_some(PairDecision::Rejected(fault))
     }
 
     fn fit(&self) -> Result<&Fit, PairFault> {
         self.fit.ok_or(PairFault::NoSimilarityOfPairs { pairs: self.evidence.pairs.len() })
     }
 
-    fn refused(&self, fit: &Fit) -> Option<Opinion> {
+    fn refused(&self, fit: &Fit) -> Option<PairDecision> {
         let limits = &self.limits.judge;
         let (pairs, inliers) = (self.evidence.pairs.len(), fit.inlier_count());
         if (inliers as f64) < limits.agreeing_share * pairs as f64 || inliers < limits.fewest_pairs {
-            return Some(Opinion::Apart(PairFault::FewPairsAgree { inliers, pairs }));
+            return Some(PairDecision::Rejected(PairFault::FewPairsAgree { inliers, pairs }));
         }
         if fit.bend > limits.most_bend {
-            return Some(Opinion::Apart(PairFault::Bent { bend: fit.bend }));
+            return Some(PairDecision::Rejected(PairFault::Bent { bend: fit.bend }));
         }
         mirrored(self.mirror_gain(fit), limits)
     }

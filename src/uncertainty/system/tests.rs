@@ -11,30 +11,31 @@ fn the_information_is_that_of_least_squares_with_the_dense_covariance() {
     let chart = refiner.assess(&[], &pose, 0.0).chart;
     let observed = observations(&refiner, &pose, scene.gate_unit_m);
     let system = System::converged(&refiner, &pose, &chart, &observed);
-    let (n, count) = (system.common, observed.pieces.len());
+    let (n, count) = (system.common, observed.cells.len());
     let mut covariance = DMatrix::zeros(count, count);
     let known = system.known();
-    let mut share = |pieces: &std::ops::Range<usize>, column: usize, variance: f64| {
-        for i in pieces.clone() {
-            for j in pieces.clone() {
+    let mut share = |cells: &std::ops::Range<usize>, column: usize, variance: f64| {
+        for i in cells.clone() {
+            for j in cells.clone() {
                 covariance[(i, j)] += system.rows[(column, i)] * system.rows[(column, j)] * variance;
             }
         }
     };
     (POSE..n).for_each(|k| share(&(0..count), k, 1.0 / known[(k, k)]));
     for (b, building) in observed.buildings.iter().enumerate() {
-        let fronts = &observed.fronts[building.fronts.clone()];
-        let pieces = fronts[0].pieces.start..fronts[fronts.len() - 1].pieces.end;
-        let variance = system.spreads.building[building.kind as usize] / system.building_weights[b];
-        (0..OF_BUILDING).for_each(|k| share(&pieces, n + 1 + k, variance));
-        for f in building.fronts.clone() {
-            let front = &observed.fronts[f];
-            let variance = system.spreads.front[front.kind as usize] / system.front_weights[f];
-            (0..OF_FRONT).for_each(|k| share(&front.pieces, n + 1 + OF_BUILDING + k, variance));
+        let building_planes = &observed.building_planes[building.building_planes.clone()];
+        let cells = building_planes[0].cells.start..building_planes[building_planes.len() - 1].cells.end;
+        let variance = system.variances.building[building.kind as usize] / system.building_weights[b];
+        (0..OF_BUILDING).for_each(|k| share(&cells, n + 1 + k, variance));
+        for f in building.building_planes.clone() {
+            let building_plane = &observed.building_planes[f];
+            let variance =
+                system.variances.building_plane[building_plane.kind as usize] / system.building_plane_weights[f];
+            (0..OF_BUILDING_PLANE).for_each(|k| share(&building_plane.cells, n + 1 + OF_BUILDING + k, variance));
         }
     }
     for i in 0..count {
-        covariance[(i, i)] += system.variance_of_piece(i) / system.piece_weights[i];
+        covariance[(i, i)] += system.variance_of_cell(i) / system.cell_weights[i];
     }
     let pose_rows = system.rows.rows(0, POSE).transpose();
     let expected = pose_rows.transpose() * inverse(covariance) * &pose_rows;

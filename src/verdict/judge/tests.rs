@@ -25,7 +25,7 @@ fn hold(open: Option<usize>) -> PoseInformation {
     }
 }
 
-fn ruling(rivals: &[Rival], hold: &PoseInformation) -> Decision {
+fn decision(rivals: &[Rival], hold: &PoseInformation) -> Decision {
     let (rivals, hold) = (rivals.to_vec(), hold.clone());
     let evidence = Evidence { rivals, hold, witnesses: 20, speaking: 12, by_chance: 128, most_by_chance: 2.0 };
     judge(&evidence, &Limits::default().verdict)
@@ -41,7 +41,7 @@ fn with_given_scale(log_off: f64, log_sigma: f64) -> PoseInformation {
 
 #[test]
 fn a_given_scale_that_the_data_contradict_is_undetermined_and_both_are_told() {
-    let wrong = ruling(&[rival([0.0; 3], 3.0)], &with_given_scale(-0.049, 0.002));
+    let wrong = decision(&[rival([0.0; 3], 3.0)], &with_given_scale(-0.049, 0.002));
     assert_eq!(wrong.verdict, Verdict::Undetermined);
     assert!(wrong.reason.contains("the data say 6.522") && wrong.reason.contains("given was 6.85"), "{}", wrong.reason);
 }
@@ -49,7 +49,7 @@ fn a_given_scale_that_the_data_contradict_is_undetermined_and_both_are_told() {
 #[test]
 fn a_given_scale_within_the_sigmas_of_the_data_or_of_the_model_is_aligned() {
     for (off, sigma) in [(0.02, 0.01), (0.005, 0.0001), (0.05, f64::INFINITY)] {
-        let right = ruling(&[rival([0.0; 3], 30.0)], &with_given_scale(off, sigma));
+        let right = decision(&[rival([0.0; 3], 30.0)], &with_given_scale(off, sigma));
         assert_eq!(right.verdict, Verdict::Aligned, "{}", right.reason);
     }
 }
@@ -63,37 +63,37 @@ fn a_given_scale_is_a_freedom_told_as_given_and_no_other_freedom_is_scale() {
 
 #[test]
 fn is_aligned_when_all_is_held_and_nothing_rivals() {
-    let ruling = ruling(&[rival([0.0; 3], 30.0), rival([5.0, 0.0, 0.0], 3.0)], &hold(None));
-    assert_eq!(ruling.verdict, Verdict::Aligned, "{}", ruling.reason);
-    assert!(ruling.certainty.probability > 0.999_999, "{:?}", ruling.certainty);
+    let decision = decision(&[rival([0.0; 3], 30.0), rival([5.0, 0.0, 0.0], 3.0)], &hold(None));
+    assert_eq!(decision.verdict, Verdict::Aligned, "{}", decision.reason);
+    assert!(decision.certainty.probability > 0.999_999, "{:?}", decision.certainty);
 }
 
 #[test]
 fn is_undetermined_along_up_when_only_walls_hold() {
-    let ruling = ruling(&[rival([0.0; 3], 30.0)], &hold(Some(5)));
-    assert_eq!(ruling.verdict, Verdict::Undetermined);
-    assert!(ruling.reason.contains("along up") && ruling.reason.contains("--terrain"), "{}", ruling.reason);
+    let decision = decision(&[rival([0.0; 3], 30.0)], &hold(Some(5)));
+    assert_eq!(decision.verdict, Verdict::Undetermined);
+    assert!(decision.reason.contains("along up") && decision.reason.contains("--terrain"), "{}", decision.reason);
 }
 
 #[test]
 fn a_freedom_that_rests_on_one_witness_alone_is_undetermined() {
     let mut hold = hold(None);
-    assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Aligned);
+    assert_eq!(decision(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Aligned);
     hold.without[1][(5, 5)] = 0.0;
-    let ruling = ruling(&[rival([0.0; 3], 30.0)], &hold);
-    assert_eq!(ruling.verdict, Verdict::Undetermined);
-    assert!(ruling.reason.contains("along up"), "{}", ruling.reason);
+    let decision = decision(&[rival([0.0; 3], 30.0)], &hold);
+    assert_eq!(decision.verdict, Verdict::Undetermined);
+    assert!(decision.reason.contains("along up"), "{}", decision.reason);
 }
 
 #[test]
 fn a_freedom_that_turns_open_with_another_once_a_witness_is_left_out_is_undetermined() {
     let mut hold = hold(None);
-    assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Aligned);
+    assert_eq!(decision(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Aligned);
     // Without one front only the sum of two freedoms is held: either looks held where the other is not asked.
     let held = hold.without[1][(3, 3)] * (1.0 - 1e-9);
     hold.without[1][(3, 4)] = held;
     hold.without[1][(4, 3)] = held;
-    assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Undetermined);
+    assert_eq!(decision(&[rival([0.0; 3], 30.0)], &hold).verdict, Verdict::Undetermined);
 }
 
 #[test]
@@ -116,14 +116,14 @@ fn the_sigma_of_a_freedom_is_that_of_the_covariance() {
 #[test]
 fn what_is_determined_is_for_the_user_to_say() {
     let exact = PoseInformation { accuracy_m: 0.04, ..hold(None) };
-    assert_eq!(ruling(&[rival([0.0; 3], 30.0)], &exact).verdict, Verdict::Undetermined);
+    assert_eq!(decision(&[rival([0.0; 3], 30.0)], &exact).verdict, Verdict::Undetermined);
 }
 
 #[test]
 fn a_shift_along_what_is_open_is_no_rival_and_any_other_is() {
-    let same = ruling(&[rival([0.0; 3], 30.0), rival([0.0, 0.0, 4.0], 29.0)], &hold(Some(5)));
+    let same = decision(&[rival([0.0; 3], 30.0), rival([0.0, 0.0, 4.0], 29.0)], &hold(Some(5)));
     assert_eq!(same.verdict, Verdict::Undetermined);
-    let other = ruling(&[rival([0.0; 3], 30.0), rival([4.0, 0.0, 0.0], 29.0)], &hold(None));
+    let other = decision(&[rival([0.0; 3], 30.0), rival([4.0, 0.0, 0.0], 29.0)], &hold(None));
     assert_eq!(other.verdict, Verdict::Ambiguous);
     assert_eq!(other.alternatives.len(), 1);
     assert!(other.alternatives[0].differs.contains("shifted by (4.00, 0.00, 0.00) m"));
@@ -136,12 +136,12 @@ fn evidence_that_chance_may_give_to_one_of_the_poses_tried_fails() {
     let verdict = |bits: f64, others: usize| {
         let others = (1..=others).map(|k| rival([5.0 * k as f64, 0.0, 0.0], -20.0));
         let all: Vec<Rival> = std::iter::once(rival([0.0; 3], bits)).chain(others).collect();
-        ruling(&all, &hold(None)).verdict
+        decision(&all, &hold(None)).verdict
     };
     // One in a thousand: ten bits; of eight poses one may have three more by chance.
     assert_eq!([9.9, 10.0].map(|bits| verdict(bits, 0)), [Verdict::Failed, Verdict::Aligned]);
     assert_eq!([12.9, 13.0].map(|bits| verdict(bits, 7)), [Verdict::Failed, Verdict::Aligned]);
-    assert_eq!(ruling(&[], &hold(None)).verdict, Verdict::Failed);
+    assert_eq!(decision(&[], &hold(None)).verdict, Verdict::Failed);
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn a_pose_that_the_start_finds_unlikely_among_those_tried_needs_more_evidence() 
     let needed = |of_best: f64, of_other: f64| {
         let best = Rival { prior_bits: of_best, ..rival([0.0; 3], 12.0) };
         let other = Rival { prior_bits: of_other, ..rival([5.0, 0.0, 0.0], -20.0) };
-        ruling(&[best, other], &hold(None)).certainty.needed_bits
+        decision(&[best, other], &hold(None)).certainty.needed_bits
     };
     // A share of 8 in 9 costs a sixth of a bit, one of 1 in 9 three.
     assert!((needed(-1.0, -4.0) - 10.0 - (9.0f64 / 8.0).log2()).abs() < 0.04, "{}", needed(-1.0, -4.0));
@@ -160,7 +160,7 @@ fn a_pose_that_the_start_finds_unlikely_among_those_tried_needs_more_evidence() 
 fn a_rival_within_the_margin_is_ambiguous_and_the_start_has_its_say() {
     let verdict = |bits: f64, prior_bits: f64| {
         let second = Rival { prior_bits, ..rival([5.0, 0.0, 0.0], bits) };
-        ruling(&[rival([0.0; 3], 40.0), second], &hold(None)).verdict
+        decision(&[rival([0.0; 3], 40.0), second], &hold(None)).verdict
     };
     assert_eq!([29.0, 31.0].map(|bits| verdict(bits, -1.0)), [Verdict::Aligned, Verdict::Ambiguous]);
     assert_eq!(verdict(31.0, -4.0), Verdict::Aligned);
@@ -170,7 +170,7 @@ fn a_rival_within_the_margin_is_ambiguous_and_the_start_has_its_say() {
 fn beyond_the_start_a_twin_is_told_and_only_what_explains_more_is_a_rival() {
     let with = |bits: f64| {
         let twin = Rival { beyond_start: true, ..rival([60.0, 0.0, 0.0], bits) };
-        ruling(&[rival([0.0; 3], 40.0), twin], &hold(None))
+        decision(&[rival([0.0; 3], 40.0), twin], &hold(None))
     };
     let (twin, better, worse) = (with(39.9), with(40.1), with(20.0));
     assert_eq!([&twin, &better, &worse].map(|r| r.verdict), [Verdict::Aligned, Verdict::Ambiguous, Verdict::Aligned]);

@@ -3,7 +3,10 @@
 
 mod evidence;
 mod obstacle;
+mod options;
+mod outcome;
 mod report;
 mod task;
 
-pub use task::{AlignOptions, Up, align};
+pub use options::{AlignOptions, Up};
+pub use task::align;

@@ -1,9 +1,9 @@
 //! What the stages found, put together as an [`Alignment`].
 
-use super::AlignOptions;
 use super::evidence::VerdictInput;
 use super::obstacle::Obstacle;
-use super::task::Outcome;
+use super::options::AlignOptions;
+use super::outcome::Outcome;
 use crate::correspondence::{NO_SOLVER, PointPlaneMatch};
 use crate::geometry::Point3;
 use crate::planes::{Patches, PreparedCity, UpCandidate};

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::evidence::VerdictInput;
+use super::options::{AlignOptions, Up};
+use super::outcome::Outcome;
 use super::{evidence, obstacle, report};
 use crate::correspondence::{Candidate, Hypotheses, PoseRefiner, Scene, candidates, joined, search};
 use crate::evidence::CandidateEvaluation;
@@ -14,70 +15,6 @@ use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choos
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
 use crate::verdict::{Alignment, Decision, Verdict, judge};
-
-/// Which way is up in the reconstruction.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Up {
-    /// Estimated from walls, floors and cameras.
-    #[default]
-    Auto,
-    /// Not used: the search turns freely, as far as three sigmas of the start's tilt.
-    None,
-    /// Given, in the sfm frame (any length but zero).
-    Given(Vector3<f64>),
-}
-
-/// What the user may set.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub struct AlignOptions {
-    /// To absolute city coordinates.
-    pub start: Start,
-    /// Metres per sfm unit, held fixed, in place of the start's; free where `None`.
-    pub fixed_scale: Option<f64>,
-    pub up: Up,
-    /// What a freedom must be held to, metres at the scene's radius; where `None`, as the limits say.
-    pub accuracy_m: Option<f64>,
-    /// Same seed, same answer, whatever the number of threads.
-    pub seed: u64,
-    pub(crate) limits: Limits,
-}
-
-impl AlignOptions {
-    /// Everything but the start as most users want it.
-    pub fn new(start: Start) -> AlignOptions {
-        AlignOptions { start, fixed_scale: None, up: Up::Auto, accuracy_m: None, seed: 0, limits: Limits::default() }
-    }
-
-    /// Holds the scale, metres per sfm unit; `None` leaves it free.
-    pub fn with_fixed_scale(self, metres_per_unit: impl Into<Option<f64>>) -> AlignOptions {
-        AlignOptions { fixed_scale: metres_per_unit.into(), ..self }
-    }
-
-    pub fn with_up(self, up: Up) -> AlignOptions {
-        AlignOptions { up, ..self }
-    }
-
-    /// What a freedom must be held to in order to be determined, metres at the scene's radius.
-    pub fn with_accuracy(self, accuracy_m: f64) -> AlignOptions {
-        AlignOptions { accuracy_m: Some(accuracy_m), ..self }
-    }
-
-    /// The chance of a wrong `aligned` that may be taken, between zero and one.
-    pub fn with_false_alarm(mut self, chance: f64) -> AlignOptions {
-        self.limits.verdict.false_alarm = chance;
-        self
-    }
-
-    #[doc(hidden)]
-    pub fn with_limits(self, limits: Limits) -> AlignOptions {
-        AlignOptions { limits, ..self }
-    }
-
-    pub fn with_seed(self, seed: u64) -> AlignOptions {
-        AlignOptions { seed, ..self }
-    }
-}
 
 /// Finds where the reconstruction stands in the city and judges it. `superpixels` are the evidence of labels or
 /// photographs; without them planar clusters are taken out of the cloud itself.
@@ -128,13 +65,6 @@ struct View<'a> {
     scene: Scene<'a>,
     hypotheses: Hypotheses,
     candidates: Vec<Candidate>,
-}
-
-/// Evidence, decision and search statistics of one run.
-pub(super) struct Outcome {
-    pub decision: Decision,
-    pub found: VerdictInput,
-    pub hypotheses: Hypotheses,
 }
 
 impl<'a> Task<'a> {

@@ -149,3 +149,33 @@ fn no_ring_makes_it_panic() {
         area(&ring);
     }
 }
+
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+proptest! {
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(5), failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+    #[test]
+    fn a_ring_that_does_not_cross_itself_has_the_area_of_its_corners(
+        radii in prop::collection::vec(0.2..10.0f64, 3..40),
+        shift in prop::array::uniform2(-1e3..1e3f64),
+    ) {
+        // Corners at rising angles about one point never cross.
+        let step = std::f64::consts::TAU / radii.len() as f64;
+        let corner = |(k, r): (usize, &f64)| {
+            let (sin, cos) = (step * k as f64).sin_cos();
+            [shift[0] + r * cos, shift[1] + r * sin]
+        };
+        let ring: Vec<[f64; 2]> = radii.iter().enumerate().map(corner).collect();
+        let twice: f64 = (0..ring.len())
+            .map(|k| {
+                let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
+                (a[0] - shift[0]) * (b[1] - shift[1]) - (b[0] - shift[0]) * (a[1] - shift[1])
+            })
+            .sum();
+        let made = area(&ring).unwrap();
+        prop_assert!((made - twice / 2.0).abs() < 1e-6 * twice, "{} {}", made, twice / 2.0);
+        prop_assert!(!overlaps(&ring));
+    }
+}

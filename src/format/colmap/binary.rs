@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, ErrorKind, Read};
 
-use super::model::Fault;
+use super::fault::Fault;
 use super::records::*;
 
 /// Bytes of the smallest record of each kind; a count that asks for more than the file has is refused by them.

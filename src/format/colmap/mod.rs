@@ -4,6 +4,7 @@
 //! `reconstruction` to judge. <https://colmap.github.io/format.html> describes the files.
 
 mod binary;
+mod fault;
 mod model;
 mod records;
 mod text;

@@ -5,6 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use super::binary::{self, Cursor};
+use super::fault::Fault;
 use super::records::*;
 use super::text;
 use crate::format::file::{LARGEST_MODEL_BYTES, is_there, open_regular, read_at_most};
@@ -36,19 +37,6 @@ impl std::fmt::Display for Place {
             Place::Line(line) => write!(f, "line {line}"),
             Place::Byte(byte) => write!(f, "byte {byte}"),
         }
-    }
-}
-
-/// What was wrong in a file; the reader of the whole file adds its path and, for text, the line.
-#[derive(Debug)]
-pub(super) enum Fault {
-    Unreadable(std::io::Error),
-    Malformed { at: u64, object: String, expected: String, got: String },
-}
-
-impl Fault {
-    pub fn malformed(at: u64, object: impl Into<String>, expected: impl Into<String>, got: impl Into<String>) -> Fault {
-        Fault::Malformed { at, object: object.into(), expected: expected.into(), got: got.into() }
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::BufRead;
 
 use rayon::prelude::*;
 
-use super::model::Fault;
+use super::fault::Fault;
 use super::records::*;
 
 /// Points are parsed in parallel in pieces of about this many bytes; any size gives the same result.

@@ -177,3 +177,38 @@ fn beyond_the_start_a_twin_is_told_and_only_what_explains_more_is_a_rival() {
     assert!(twin.reason.contains("rests on the start") && !worse.reason.contains("rests on the start"));
     assert!(better.reason.contains("beyond three sigmas of the start"), "{}", better.reason);
 }
+
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+proptest! {
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(6), failure_persistence: None, ..ProptestConfig::with_cases(300) })]
+
+    #[test]
+    fn the_covariance_is_the_inverse_of_all_information_and_sigmas_lie_on_it(
+        entries in prop::collection::vec(-3.0..3.0f64, 98),
+        radius in 5.0..50.0f64,
+    ) {
+        // Any two positive definite matrices.
+        let of = |part: &[f64]| {
+            let root = Matrix7::from_column_slice(part);
+            root * root.transpose() + Matrix7::identity() * 0.1
+        };
+        let (information, prior) = (of(&entries[..49]) * 100.0, of(&entries[49..]));
+        let hold = PoseInformation {
+            chart: Chart::of_similarity(Point3::origin(), radius),
+            information,
+            without: vec![information],
+            prior,
+            ..hold(None)
+        };
+        let lengths = Matrix7::from_diagonal(&[radius, radius, radius, 1.0, 1.0, 1.0, radius].into());
+        let stated = Matrix7::from_fn(|i, j| hold.covariance()[i][j]);
+        let unity = lengths * stated * lengths * (information + prior);
+        prop_assert!((unity - Matrix7::identity()).norm() < 1e-6, "{}", unity);
+        for direction in hold.directions() {
+            let variance = direction.unit.dot(&(lengths * stated * lengths * direction.unit));
+            prop_assert!((direction.sigma_m / variance.sqrt() - 1.0).abs() < 1e-6);
+        }
+    }
+}

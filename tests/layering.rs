@@ -96,9 +96,11 @@ fn rust_files(path: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// A file's own code: without comments, and without its tests, which may build their scenes from any room. Tests in a file of
-/// their own (`tests.rs`), and the scenes that tests share (`test_scene.rs`), are nothing else.
+/// their own (`tests.rs`, or below a folder `tests`), and the scenes that tests share (`test_scene.rs`), are nothing else.
 fn code_of(path: &Path) -> String {
-    if path.file_name().is_some_and(|name| name == "tests.rs" || name == "test_scene.rs") {
+    let is_test = path.file_name().is_some_and(|name| name == "tests.rs" || name == "test_scene.rs")
+        || path.parent().is_some_and(|folder| folder.ends_with("tests"));
+    if is_test {
         return String::new();
     }
     let text = std::fs::read_to_string(path).unwrap();

@@ -127,7 +127,7 @@ impl ScaleTranslationEstimate {
     }
 
     /// Where a patch at `point` is expected.
-    pub fn expect(&self, point: &Point3<f64>) -> Expectation<'_> {
+    pub fn predict(&self, point: &Point3<f64>) -> Expectation<'_> {
         let arm = self.turn(&point.coords);
         let spun = self.spin.cross(&arm);
         let row_variance = self.row_variance(point);
@@ -231,13 +231,13 @@ mod tests {
         let spinning = belief.spinning(Vector3::x() * 0.5);
         let place = Point3::new(5.0, 40.0, 0.0);
         // The wall stands 45 m higher: out of reach, but for a spin of some sigmas about the wall's own normal.
-        assert!(belief.expect(&place).likelihood(&wall(0.0, -5.0)).is_some());
-        assert!(belief.expect(&place).likelihood(&wall(45.0, -5.0)).is_none());
+        assert!(belief.predict(&place).likelihood(&wall(0.0, -5.0)).is_some());
+        assert!(belief.predict(&place).likelihood(&wall(45.0, -5.0)).is_none());
         assert_eq!(
-            spinning.expect(&place).likelihood(&wall(45.0, -5.0)),
-            belief.expect(&place).likelihood(&wall(0.0, -5.0))
+            spinning.predict(&place).likelihood(&wall(45.0, -5.0)),
+            belief.predict(&place).likelihood(&wall(0.0, -5.0))
         );
-        assert!(spinning.expect(&place).likelihood(&wall(45.0, -80.0)).is_none());
+        assert!(spinning.predict(&place).likelihood(&wall(45.0, -80.0)).is_none());
     }
 
     #[test]

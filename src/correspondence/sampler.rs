@@ -251,7 +251,7 @@ impl<'a> Sampler<'a> {
         self.targets.each_facing(azimuth(normal), self.prior.most_heading_rad(), |t| {
             if has_same_tilt(t) {
                 let turned = belief.turned(about_up_from(normal, &t.normal()));
-                let likelihood = turned.expect(&self.level_cloud.patches[patch].center).likelihood(t);
+                let likelihood = turned.predict(&self.level_cloud.patches[patch].center).likelihood(t);
                 likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
             }
         });
@@ -265,7 +265,7 @@ impl<'a> Sampler<'a> {
         for t in self.targets.all() {
             let Some(rotation) = turn_onto(t) else { continue };
             let leaning = belief.turned(rotation).spinning(self.prior.spin_sigma_about(&t.normal()));
-            let likelihood = leaning.expect(&self.level_cloud.patches[patch].center).likelihood(t);
+            let likelihood = leaning.predict(&self.level_cloud.patches[patch].center).likelihood(t);
             likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
         }
     }
@@ -296,7 +296,7 @@ impl<'a> Sampler<'a> {
                 }
                 let mut turned = belief.turned(rotation);
                 turned.learn(first_center, &first.target);
-                if let Some(likelihood) = turned.expect(&p.center).likelihood(t) {
+                if let Some(likelihood) = turned.predict(&p.center).likelihood(t) {
                     choice.offer(likelihood, (rotation, normal, t.id), random);
                 }
             }
@@ -364,7 +364,7 @@ impl<'a> Sampler<'a> {
         random: &mut Random,
     ) -> Option<Drawn<PatchPlanePair>> {
         let p = &self.level_cloud.patches[patch];
-        let expected = belief.expect(&p.center);
+        let expected = belief.predict(&p.center);
         let mut choice = Choice::default();
         for side in sides(p) {
             let normal = belief.turn(&side);

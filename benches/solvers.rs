@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench solvers`
 
-use cityweld::solvers::scene::{Chance, sample, up};
+use cityweld::solvers::scene::{Random, sample, up};
 use cityweld::solvers::{Row, Sought, solve_minimal};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -11,7 +11,7 @@ use std::hint::black_box;
 const SAMPLES: usize = 1000;
 
 fn bench(criterion: &mut Criterion) {
-    let up = up(&mut Chance::new(2));
+    let up = up(&mut Random::stream(2, 0));
     let families = [
         ("rigid", Sought::Rigid),
         ("similarity", Sought::Similarity),
@@ -26,8 +26,8 @@ fn bench(criterion: &mut Criterion) {
 }
 
 fn measure(criterion: &mut Criterion, name: &str, points_per_plane: &[usize], sought: &Sought) {
-    let mut chance = Chance::new(1);
-    let samples: Vec<Vec<Row>> = (0..SAMPLES).map(|_| sample(&mut chance, sought, points_per_plane).rows).collect();
+    let mut random = Random::stream(1, 0);
+    let samples: Vec<Vec<Row>> = (0..SAMPLES).map(|_| sample(&mut random, sought, points_per_plane).rows).collect();
     let mut next = 0;
     criterion.bench_function(&format!("{name} {points_per_plane:?}"), |bencher| {
         bencher.iter(|| {

@@ -8,7 +8,7 @@
 //! `cargo run --release --example contact_sensor [SEED]`
 
 use cityweld::internals::Graph;
-use cityweld::solvers::scene::{Chance, angle_between_rad, pose};
+use cityweld::solvers::scene::{Random, angle_between_rad, pose};
 use cityweld::solvers::{Row, Sought, refine, solve_minimal};
 use cityweld::{Matrix3, Rotation3, Similarity, Vector3};
 
@@ -68,11 +68,11 @@ pub fn icosahedron() -> Vec<Face> {
 
 /// The whole experiment; `None` where the contacts could not be sorted.
 pub fn run(seed: u64) -> Option<Outcome> {
-    let mut chance = Chance::new(seed);
+    let mut random = Random::stream(seed, 0);
     let faces = icosahedron();
-    let truth = pose(&mut chance, &Sought::Rigid);
-    let contacts = contacts(&mut chance, &faces, &truth);
-    let clusters = clusters(&mut chance, &contacts);
+    let truth = pose(&mut random, &Sought::Rigid);
+    let contacts = contacts(&mut random, &faces, &truth);
+    let clusters = clusters(&mut random, &contacts);
     let cliques = matchings(&clusters, &faces);
     let mut best: Vec<(f64, Similarity)> = cliques
         .iter()
@@ -88,11 +88,11 @@ pub fn run(seed: u64) -> Option<Outcome> {
 }
 
 /// Noisy contacts, uniform on four random faces, in the probe's frame.
-fn contacts(chance: &mut Chance, faces: &[Face], object_from_sensor: &Similarity) -> Vec<Vector3<f64>> {
+fn contacts(random: &mut Random, faces: &[Face], object_from_sensor: &Similarity) -> Vec<Vector3<f64>> {
     let mut order: Vec<(f64, usize)>;
     // Two pairs of opposite faces have their normals in one plane, and no contacts on them determine a pose.
     while {
-        order = (0..faces.len()).map(|i| (chance.uniform(), i)).collect();
+        order = (0..faces.len()).map(|i| (random.unit(), i)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         let drawn: Vec<usize> = order[..FACES].iter().map(|entry| entry.1).collect();
         widest(&drawn, faces).0 < 0.1
@@ -102,12 +102,12 @@ fn contacts(chance: &mut Chance, faces: &[Face], object_from_sensor: &Similarity
     for &(_, face) in &order[..FACES] {
         let [a, b, c] = faces[face].corners;
         for _ in 0..CONTACTS_ON_EACH_FACE {
-            let (mut u, mut v) = (chance.uniform(), chance.uniform());
+            let (mut u, mut v) = (random.unit(), random.unit());
             if u + v > 1.0 {
                 (u, v) = (1.0 - u, 1.0 - v);
             }
-            let x = a + (b - a) * u + (c - a) * v + chance.normal_vector() * NOISE_MM;
-            contacts.push((chance.uniform(), sensor_from_object.apply(&x.into()).coords));
+            let x = a + (b - a) * u + (c - a) * v + random.normal_vector() * NOISE_MM;
+            contacts.push((random.unit(), sensor_from_object.apply(&x.into()).coords));
         }
     }
     // Unsorted, as a probe that goes round would deliver them.
@@ -122,8 +122,8 @@ pub struct Cluster {
 }
 
 /// The plane with most contacts again and again, from random triples.
-fn clusters(chance: &mut Chance, contacts: &[Vector3<f64>]) -> Vec<Cluster> {
-    let mut found = planes(chance, contacts);
+fn clusters(random: &mut Random, contacts: &[Vector3<f64>]) -> Vec<Cluster> {
+    let mut found = planes(random, contacts);
     // The first planes have taken contacts of their neighbours near common edges: every contact goes to its nearest plane.
     for _ in 0..REFITS {
         let distance = |plane: &(Vector3<f64>, Vector3<f64>), x: &Vector3<f64>| plane.1.dot(&(x - plane.0)).abs();
@@ -145,13 +145,13 @@ fn clusters(chance: &mut Chance, contacts: &[Vector3<f64>]) -> Vec<Cluster> {
 }
 
 /// Centres and normals of planes with many contacts.
-fn planes(chance: &mut Chance, contacts: &[Vector3<f64>]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+fn planes(random: &mut Random, contacts: &[Vector3<f64>]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let mut left = contacts.to_vec();
     let mut found = Vec::new();
     while left.len() >= CONTACTS_ON_EACH_FACE / 2 && found.len() < FACES {
         let mut best: Vec<usize> = Vec::new();
         for _ in 0..PLANE_TRIALS {
-            let [a, b, c] = [0; 3].map(|_| left[(chance.uniform() * left.len() as f64) as usize]);
+            let [a, b, c] = [0; 3].map(|_| left[(random.unit() * left.len() as f64) as usize]);
             let Some(normal) = (b - a).cross(&(c - a)).try_normalize(EDGE_MM) else { continue };
             let on: Vec<usize> = (0..left.len()).filter(|&i| normal.dot(&(left[i] - a)).abs() < BAND_MM).collect();
             if on.len() > best.len() {

@@ -3,7 +3,7 @@
 //! `cargo run --release --example figure4 [TRIALS] [FOLDER]` prints the table and writes `figure4.csv`,
 //! `figure4_rotation.svg` and `figure4_position.svg` to FOLDER (default `target/figure4`).
 
-use cityweld::solvers::scene::{Chance, SIDE, angle_between_rad, pose};
+use cityweld::solvers::scene::{Random, SIDE, angle_between_rad, pose};
 use cityweld::solvers::{Row, Sought, linear_least_squares, refine, solve_minimal};
 use cityweld::{Point3, Similarity};
 
@@ -50,14 +50,14 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub fn new(chance: &mut Chance, noise: f64) -> Scene {
-        let truth = pose(chance, &Sought::Rigid);
+    pub fn new(random: &mut Random, noise: f64) -> Scene {
+        let truth = pose(random, &Sought::Rigid);
         let inverse = truth.inverse();
         let mut rows = Vec::new();
         for _ in 0..PLANES {
-            let plane = chance.plane();
+            let plane = random.plane();
             for _ in 0..POINTS_ON_EACH {
-                let x = chance.on_plane(&plane) + chance.normal_vector() * (noise * SIDE);
+                let x = random.on_plane(&plane) + random.normal_vector() * (noise * SIDE);
                 rows.push(Row { point: inverse.apply(&x.into()).coords, normal: plane.0, offset: plane.1 });
             }
         }
@@ -65,10 +65,10 @@ impl Scene {
     }
 
     /// Rows of a random sample: so many points on each of so many planes.
-    pub fn draw(&self, chance: &mut Chance, points_per_plane: &[usize]) -> Vec<Row> {
+    pub fn draw(&self, random: &mut Random, points_per_plane: &[usize]) -> Vec<Row> {
         let mut rows = Vec::new();
-        for (plane, &points) in distinct(chance, PLANES, points_per_plane.len()).into_iter().zip(points_per_plane) {
-            let of_plane = distinct(chance, POINTS_ON_EACH, points);
+        for (plane, &points) in distinct(random, PLANES, points_per_plane.len()).into_iter().zip(points_per_plane) {
+            let of_plane = distinct(random, POINTS_ON_EACH, points);
             rows.extend(of_plane.into_iter().map(|point| self.rows[plane * POINTS_ON_EACH + point]));
         }
         rows
@@ -83,14 +83,14 @@ impl Scene {
     /// Best pose of so many samples.
     pub fn best_of(
         &self,
-        chance: &mut Chance,
+        random: &mut Random,
         method: Method,
         points_per_plane: &[usize],
         samples: usize,
     ) -> Option<Similarity> {
         let mut best = (f64::INFINITY, None);
         for _ in 0..samples {
-            for pose in poses(method, points_per_plane, &self.draw(chance, points_per_plane)) {
+            for pose in poses(method, points_per_plane, &self.draw(random, points_per_plane)) {
                 let distance = self.mean_distance(&pose);
                 if distance < best.0 {
                     best = (distance, Some(pose));
@@ -121,10 +121,10 @@ fn poses(method: Method, points_per_plane: &[usize], rows: &[Row]) -> Vec<Simila
 }
 
 /// Distinct indices below `below`.
-fn distinct(chance: &mut Chance, below: usize, count: usize) -> Vec<usize> {
+fn distinct(random: &mut Random, below: usize, count: usize) -> Vec<usize> {
     let mut all: Vec<usize> = (0..below).collect();
     for i in 0..count {
-        let j = i + (chance.uniform() * (below - i) as f64) as usize;
+        let j = i + (random.unit() * (below - i) as f64) as usize;
         all.swap(i, j);
     }
     all.truncate(count);
@@ -133,11 +133,11 @@ fn distinct(chance: &mut Chance, below: usize, count: usize) -> Vec<usize> {
 
 /// Mean errors (degrees, position) over trials.
 pub fn mean_errors(method: Method, points_per_plane: &[usize], noise: f64, trials: usize) -> (f64, f64) {
-    let mut chance = Chance::new(4);
+    let mut random = Random::stream(4, 0);
     let (mut rotation, mut position, mut solved) = (0.0, 0.0, 0.0);
     for _ in 0..trials {
-        let scene = Scene::new(&mut chance, noise);
-        if let Some(pose) = scene.best_of(&mut chance, method, points_per_plane, SAMPLES) {
+        let scene = Scene::new(&mut random, noise);
+        if let Some(pose) = scene.best_of(&mut random, method, points_per_plane, SAMPLES) {
             let (degrees, distance) = scene.error(&pose);
             rotation += degrees;
             position += distance;

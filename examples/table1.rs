@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example table1 [INSTANCES]`
 
-use cityweld::solvers::scene::{Chance, angle_between_rad, sample, up};
+use cityweld::solvers::scene::{Random, angle_between_rad, sample, up};
 use cityweld::solvers::{Row, Sought, solve_minimal};
 use std::hint::black_box;
 use std::time::Instant;
@@ -30,7 +30,7 @@ struct Line {
 
 fn main() {
     let instances = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(20_000);
-    let up = up(&mut Chance::new(2));
+    let up = up(&mut Random::stream(2, 0));
     let families = [
         ("rigid", Sought::Rigid),
         ("similarity", Sought::Similarity),
@@ -55,12 +55,12 @@ fn main() {
 }
 
 fn measure(points_per_plane: &[usize], sought: &Sought, instances: usize) -> Line {
-    let mut chance = Chance::new(1);
+    let mut random = Random::stream(1, 0);
     let mut errors = Vec::with_capacity(instances);
     let (mut most, mut total) = (0, 0);
     let mut timed = Vec::new();
     for _ in 0..instances {
-        let case = sample(&mut chance, sought, points_per_plane);
+        let case = sample(&mut random, sought, points_per_plane);
         let poses = solve_minimal(sought, points_per_plane, &case.rows);
         most = most.max(poses.len());
         total += poses.len();

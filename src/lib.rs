@@ -31,6 +31,7 @@
 mod limits;
 mod observer;
 mod geometry;
+mod random;
 mod format;
 mod city;
 mod reconstruction;
@@ -91,14 +92,14 @@ pub mod types {
     pub use crate::geometry::{Camera, CameraModel, StartError};
     pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};
     pub use crate::merging::{
-        Account, Anchor, DropReason, Edge, EdgeSource, Fused, Ledger, MergeError, MergedFrame, PartPlace, PartSupport,
-        Unbalanced,
+        Account, Anchor, DropReason, Edge, EdgeFault, EdgeSource, Fused, Ledger, MergeError, MergedFrame, PairFault,
+        PartPlace, PartSupport, Unbalanced,
     };
     pub use crate::planes::CityPlanes;
     pub use crate::reconstruction::{
         CameraIndex, ColmapParts, ImageIndex, PointIndex, ReconstructionError, ReconstructionWarning, WarningKind,
     };
-    pub use crate::robust::{Chart, Matrix7};
+    pub use crate::robust::{Matrix7, MotionParameters};
     pub use crate::verdict::{FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary, Support};
 }
 
@@ -106,7 +107,7 @@ pub mod types {
 pub mod steps {
     pub use crate::export::{CityCounts, InputSummary, SfmCounts, alignment_report, merge_report};
     pub use crate::imagery::{LabelMap, Labels, cut_superpixels, lift_superpixels_of};
-    pub use crate::merging::{EvidenceChoice, JoinOptions, Part, join};
+    pub use crate::merging::{JoinOptions, PairSources, Part, join};
 }
 
 /// Folders of results as the program writes them: OUT appears whole or not at all; what a city's planes look like; an earlier alignment
@@ -129,5 +130,5 @@ pub mod internals {
     pub use crate::merging::MergeLimits;
     pub use crate::planes::{CityPlanes, PlaneId, Upright, city_planes, patches};
     pub use crate::reconstruction::WarningKind;
-    pub use crate::robust::{Chart, Matrix7, Motion, NormalEquations, Problem, Random, tukey_weight};
+    pub use crate::robust::{Matrix7, Motion, MotionParameters, NormalEquations, Problem, Random, tukey_weight};
 }

@@ -63,6 +63,6 @@ impl fmt::Display for Stage {
 pub struct Cancelled;
 
 /// An error where the observer asks for the end.
-pub fn go_on(observer: &dyn Observer) -> Result<(), Cancelled> {
+pub fn check_cancelled(observer: &dyn Observer) -> Result<(), Cancelled> {
     if observer.is_cancelled() { Err(Cancelled) } else { Ok(()) }
 }

@@ -7,7 +7,7 @@ mod pieces;
 use std::path::Path;
 use std::process::Command;
 
-use cityweld::internals::{Chart, Matrix7};
+use cityweld::internals::{Matrix7, MotionParameters};
 use cityweld::steps::{JoinOptions, Part, join, merge_report};
 use cityweld::types::{Anchor, Camera, CameraIndex, CameraModel, ImageIndex, PointIndex, Support};
 use cityweld::{
@@ -237,7 +237,7 @@ fn anchor(world_from_part: Similarity, verdict: Verdict) -> Anchor {
     Anchor {
         common_from_part: world_from_part,
         verdict,
-        chart: Chart::of_similarity(Point3::new(0.0, 0.0, 10.0), 5.0),
+        parameters: MotionParameters::of_similarity(Point3::new(0.0, 0.0, 10.0), 5.0),
         information: Matrix7::identity() * 400.0,
         reason: "in the city undetermined: along up".into(),
         freedoms: vec![along_up],

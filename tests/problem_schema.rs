@@ -5,7 +5,7 @@ mod json_schema;
 mod needs;
 
 use cityweld::problem::{Refusal, answer_json, solve_json};
-use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, sample};
+use cityweld::solvers::scene::{Random, Sample, angle_between_rad, sample};
 use cityweld::solvers::{Row, Sought, Up};
 use json_schema::keeps;
 use needs::shared;
@@ -41,9 +41,9 @@ fn every_golden_problem_and_its_answer_keep_to_the_schema() {
 #[test]
 fn made_up_problems_and_their_answers_keep_to_the_schema_and_find_the_truth() {
     let schema = schema();
-    let mut chance = Chance::new(2);
+    let mut random = Random::stream(2, 0);
     for seed in 0..20 {
-        let [sensor, object] = [chance.direction(), chance.direction()];
+        let [sensor, object] = [random.direction(), random.direction()];
         let up = Up::new(&sensor, &object).unwrap();
         for (kind, sought, points_per_plane) in [
             ("rigid", Sought::Rigid, &[1; 6][..]),
@@ -51,7 +51,7 @@ fn made_up_problems_and_their_answers_keep_to_the_schema_and_find_the_truth() {
             ("rigid_gravity", Sought::UprightRigid(up), &[2, 1, 1]),
             ("similarity_gravity", Sought::UprightSimilarity(up), &[2, 1, 1, 1]),
         ] {
-            let Sample { rows, truth } = sample(&mut chance, &sought, points_per_plane);
+            let Sample { rows, truth } = sample(&mut random, &sought, points_per_plane);
             let points: Vec<Value> = rows.iter().map(|row| json!(row.point.as_slice())).collect();
             let plane = |row: &Row| json!({"normal": row.normal.as_slice(), "offset": row.offset});
             let planes: Vec<Value> = rows.iter().map(plane).collect();

@@ -66,7 +66,7 @@ numbers! {
         reach_sigmas, prior_cost, least_tilt_rad, model_unit_m, noise_sigmas, plane_sigma_m, least_point_sigma_m,
         same_normal_deg, grazing_deg, upright_sin, tells_floors_rad;
         whole: ;
-        not: exposure, patches, up, search, refinement, walk, sight, null_poses, evidence, uncertainty, verdict
+        not: facet_visibility, patches, up, search, refinement, line_search, occlusion, null_poses, evidence, uncertainty, verdict
     }
     verdict: verdict as VerdictLimits {
         false_alarm, same_m, default_accuracy_m, default_accuracy_share, scale_sigmas, scale_m;
@@ -74,7 +74,7 @@ numbers! {
         // Steps of a path, not bounds.
         not: scale_gates_units
     }
-    exposure: exposure as FacetVisibilityLimits {
+    facet_visibility: facet_visibility as FacetVisibilityLimits {
         start_m, narrowest_gap_m, joint_m, open_m, large_triangle_m2; whole: ; not:
     }
     patches: patches as PatchLimits {
@@ -102,13 +102,13 @@ numbers! {
         // A path of narrowing gates.
         not: stages
     }
-    walk: walk as LineSearchLimits {
+    line_search: line_search as LineSearchLimits {
         loose_m, step_of_gate, settling_units, unmoved_share;
         whole: basin_points, most_rounds;
         // Counts with a sign, and a path of moves and gates.
         not: most_steps, basin_moves_units, basin_gates_units
     }
-    sight: sight as OcclusionLimits { surroundings_m, camera_slack_m; whole: ; not: }
+    occlusion: occlusion as OcclusionLimits { surroundings_m, camera_slack_m; whole: ; not: }
     null_poses: null_poses as NullPoseLimits {
         least_reach_m, basin_m, basin_rad, basin_log_scale;
         whole: count, samples, ranking_points, refining_points, heard;
@@ -167,7 +167,8 @@ impl Task {
     }
 
     fn outcome_with(&self, limits: &Limits) -> Outcome {
-        let own = (limits.exposure != Limits::default().exposure).then(|| prepared(&self.case, self.errand, limits));
+        let own = (limits.facet_visibility != Limits::default().facet_visibility)
+            .then(|| prepared(&self.case, self.errand, limits));
         let city = own.as_ref().unwrap_or(&self.city);
         let request = self.case.request(self.errand);
         let options = AlignOptions::new(request.start).with_fixed_scale(request.fixed_scale).with_limits(*limits);
@@ -184,7 +185,7 @@ impl Task {
 
 fn prepared(case: &Case, errand: Errand, limits: &Limits) -> PreparedCity {
     let model = if errand == Errand::ForeignTown { case.foreign_city() } else { case.city() };
-    PreparedCity::with_limits(model.unwrap(), &limits.exposure)
+    PreparedCity::with_limits(model.unwrap(), &limits.facet_visibility)
 }
 
 fn is_wrongly_aligned(outcome: Outcome) -> bool {
@@ -224,7 +225,17 @@ fn no_wrong_pose_is_aligned_by_a_fifth_of_a_number_of_the_verdict() {
 #[test]
 #[ignore = "takes minutes: all stages"]
 fn no_wrong_pose_is_aligned_by_a_fifth_of_any_number() {
-    let all = [whole_scene(), exposure(), patches(), up(), search(), refinement(), walk(), sight(), uncertainty()];
+    let all = [
+        whole_scene(),
+        facet_visibility(),
+        patches(),
+        up(),
+        search(),
+        refinement(),
+        line_search(),
+        occlusion(),
+        uncertainty(),
+    ];
     let wrong = swept(&all.into_iter().flatten().collect::<Vec<Number>>());
     assert!(wrong.is_empty(), "{wrong:#?}");
 }

@@ -4,7 +4,7 @@
 //! `cargo test --release --test solver_accuracy -- --ignored --nocapture` runs 100,000 instances each.
 
 use cityweld::Similarity;
-use cityweld::solvers::scene::{Chance, angle_between_rad, relative_residual, sample, up};
+use cityweld::solvers::scene::{Random, angle_between_rad, relative_residual, sample, up};
 use cityweld::solvers::{Row, Sought, Up, solve_minimal};
 
 /// Error of the rotation, in rad, above which the truth counts as missed.
@@ -83,11 +83,11 @@ impl Tally {
 }
 
 fn check((points, average, standard_error): &Expected, sought: fn(&Up) -> Sought, instances: usize) {
-    let mut chance = Chance::new(2026);
+    let mut random = Random::stream(2026, 0);
     let mut tally = Tally::default();
     for _ in 0..instances {
-        let sought = sought(&up(&mut chance));
-        let case = sample(&mut chance, &sought, points);
+        let sought = sought(&up(&mut random));
+        let case = sample(&mut random, &sought, points);
         tally.add(&case.rows, &case.truth, &solve_minimal(&sought, points, &case.rows));
     }
     tally.errors_rad.sort_by(f64::total_cmp);

@@ -1,6 +1,6 @@
 //! No minimal solver touches the heap.
 
-use cityweld::solvers::scene::{Chance, sample, up};
+use cityweld::solvers::scene::{Random, sample, up};
 use cityweld::solvers::{RIGID, SIMILARITY, Sought, UPRIGHT_RIGID, UPRIGHT_SIMILARITY, solve_minimal};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -28,8 +28,8 @@ static COUNTING: Counting = Counting;
 
 #[test]
 fn no_minimal_solver_allocates() {
-    let mut chance = Chance::new(5);
-    let vertical = up(&mut chance);
+    let mut random = Random::stream(5, 0);
+    let vertical = up(&mut random);
     let families = [
         (Sought::Rigid, &RIGID[..]),
         (Sought::Similarity, &SIMILARITY[..]),
@@ -39,7 +39,7 @@ fn no_minimal_solver_allocates() {
     for (sought, configurations) in families {
         for configuration in configurations {
             let points = configuration.points_per_plane;
-            let samples: Vec<_> = (0..300).map(|_| sample(&mut chance, &sought, points).rows).collect();
+            let samples: Vec<_> = (0..300).map(|_| sample(&mut random, &sought, points).rows).collect();
             let before = ALLOCATIONS.with(Cell::get);
             let poses: usize = samples.iter().map(|rows| solve_minimal(&sought, points, rows).len()).sum();
             assert_eq!(ALLOCATIONS.with(Cell::get), before, "{points:?} allocates");

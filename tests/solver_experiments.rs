@@ -5,8 +5,8 @@ mod contact_sensor;
 #[path = "../examples/figure4.rs"]
 mod figure4;
 
-use cityweld::internals::{Chart, Motion, NormalEquations, tukey_weight};
-use cityweld::solvers::scene::{Chance, SIDE};
+use cityweld::internals::{Motion, MotionParameters, NormalEquations, tukey_weight};
+use cityweld::solvers::scene::{Random, SIDE};
 use cityweld::solvers::{Row, Sought, refine};
 use cityweld::{Point3, Similarity, Vector3};
 use figure4::{METHODS, Method, NOISE, Scene, mean_errors};
@@ -41,11 +41,11 @@ type Polish = fn(&[Row], &Similarity) -> Similarity;
 
 /// Runs in which the best of 10 samples, polished on all points, ends in another minimum than the polished truth.
 fn other_minima(runs: usize, polish: Polish) -> usize {
-    let mut chance = Chance::new(6);
+    let mut random = Random::stream(6, 0);
     let mut other = 0;
     for run in 0..runs {
-        let scene = Scene::new(&mut chance, NOISE[run % NOISE.len()]);
-        let best = scene.best_of(&mut chance, Method::Minimal, &[2, 1, 1, 1, 1], 10);
+        let scene = Scene::new(&mut random, NOISE[run % NOISE.len()]);
+        let best = scene.best_of(&mut random, Method::Minimal, &[2, 1, 1, 1, 1], 10);
         let from_truth = polish(&scene.rows, &scene.truth);
         let from_sample = best.map(|pose| polish(&scene.rows, &pose));
         let apart = from_sample.map(|pose| (pose.rotation.matrix() - from_truth.rotation.matrix()).norm());
@@ -71,13 +71,13 @@ fn reweighted(rows: &[Row], start: &Similarity) -> Similarity {
         // 1.4826 makes a standard deviation of a median, and Tukey's width is 4.685 of these.
         let width = 4.685 * 1.4826 * sizes[sizes.len() / 2];
         let middle = images.iter().map(|x| x.coords).sum::<Vector3<f64>>() / images.len() as f64;
-        let chart = Chart { center: middle.into(), radius: SIDE, motion: Motion::Rigid };
+        let parameters = MotionParameters { center: middle.into(), radius: SIDE, motion: Motion::Rigid };
         let mut sums = NormalEquations::default();
         for ((row, image), residual) in rows.iter().zip(&images).zip(&residuals) {
-            sums.add(&chart.row(image, &row.normal), *residual, tukey_weight(residual * residual, width));
+            sums.add(&parameters.row(image, &row.normal), *residual, tukey_weight(residual * residual, width));
         }
-        let step = chart.step(&sums, f64::INFINITY);
-        pose = chart.moved(&pose, &step);
+        let step = parameters.step(&sums, f64::INFINITY);
+        pose = parameters.moved(&pose, &step);
         if step.norm() < 1e-10 * SIDE {
             break;
         }

@@ -4,7 +4,7 @@ mod needs;
 
 use cityweld::problem::{Refusal, parse_problem, solve_json};
 use cityweld::solvers::primitives::{ObjectPrimitive, SensorPrimitive, rows_of};
-use cityweld::solvers::scene::{Chance, Sample, angle_between_rad, pose, sample, up};
+use cityweld::solvers::scene::{Random, Sample, angle_between_rad, pose, sample, up};
 use cityweld::solvers::{Degeneracy, Row, Solution, Sought, Up, condition_at, solve, solve_minimal};
 use cityweld::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 use needs::shared;
@@ -181,14 +181,14 @@ fn upright_scenarios_give_as_many_poses_as_the_table_says() {
 fn run(scenarios: &[Scenario], sought: fn(&Up) -> Sought) {
     const PROBLEMS: usize = 40;
     for (name, pairs, concurrent, rows, most, average) in scenarios {
-        let mut chance = Chance::new(3);
+        let mut random = Random::stream(3, 0);
         let mut total = 0;
         for problem in 0..PROBLEMS {
-            let sought = sought(&up(&mut chance));
-            let truth = pose(&mut chance, &sought);
+            let sought = sought(&up(&mut random));
+            let truth = pose(&mut random, &sought);
             let kinds = pairs.iter().flat_map(|(count, pair)| std::iter::repeat_n(*pair, *count));
-            let centre = concurrent.then(|| chance.in_cube());
-            let made: Vec<_> = kinds.map(|kind| made(&mut chance, kind, centre, &truth)).collect();
+            let centre = concurrent.then(|| random.in_cube());
+            let made: Vec<_> = kinds.map(|kind| made(&mut random, kind, centre, &truth)).collect();
             let equations = rows_of(&made).unwrap();
             assert_eq!(equations.len(), *rows, "{name}");
             let solutions = solve(&sought, &equations).unwrap_or_else(|e| panic!("{name} {problem}: {e}"));
@@ -205,33 +205,33 @@ fn run(scenarios: &[Scenario], sought: fn(&Up) -> Sought) {
 }
 
 fn made(
-    chance: &mut Chance,
+    random: &mut Random,
     pair: Pair,
     centre: Option<Vector3<f64>>,
     object_from_sensor: &cityweld::Similarity,
 ) -> (SensorPrimitive, ObjectPrimitive) {
     let sensor_from_object = object_from_sensor.inverse();
-    let through = centre.unwrap_or_else(|| chance.in_cube());
-    let normal = chance.direction();
+    let through = centre.unwrap_or_else(|| random.in_cube());
+    let normal = random.direction();
     let plane = (normal, -normal.dot(&through));
-    let direction = chance.direction();
+    let direction = random.direction();
     let to_sensor = |x: Vector3<f64>| sensor_from_object.apply(&x.into()).coords;
-    let along = |chance: &mut Chance| through + direction * (100.0 * (chance.uniform() - 0.5));
+    let along = |random: &mut Random| through + direction * (100.0 * (random.unit() - 0.5));
     let plane_object = ObjectPrimitive::Plane { normal, offset: plane.1 };
-    let line_object = ObjectPrimitive::Line { point: along(chance), direction };
+    let line_object = ObjectPrimitive::Line { point: along(random), direction };
     let line_through = |a: Vector3<f64>, b: Vector3<f64>| SensorPrimitive::Line { point: a, direction: b - a };
     match pair {
-        PointPlane => (SensorPrimitive::Point(to_sensor(chance.on_plane(&plane))), plane_object),
-        PointLine => (SensorPrimitive::Point(to_sensor(along(chance))), line_object),
+        PointPlane => (SensorPrimitive::Point(to_sensor(random.on_plane(&plane))), plane_object),
+        PointLine => (SensorPrimitive::Point(to_sensor(along(random))), line_object),
         PointPoint => {
-            let vertex = chance.in_cube();
+            let vertex = random.in_cube();
             (SensorPrimitive::Point(to_sensor(vertex)), ObjectPrimitive::Point(vertex))
         }
         LinePlane => {
-            let (a, b) = (to_sensor(chance.on_plane(&plane)), to_sensor(chance.on_plane(&plane)));
+            let (a, b) = (to_sensor(random.on_plane(&plane)), to_sensor(random.on_plane(&plane)));
             (line_through(a, b), plane_object)
         }
-        LineLine => (line_through(to_sensor(along(chance)), to_sensor(along(chance))), line_object),
+        LineLine => (line_through(to_sensor(along(random)), to_sensor(along(random))), line_object),
         PlanePlane => {
             let turned = sensor_from_object.rotation * normal;
             let foot = to_sensor(through);
@@ -244,13 +244,13 @@ fn made(
 
 #[test]
 fn three_points_on_edges_are_enough() {
-    let mut chance = Chance::new(8);
+    let mut random = Random::stream(8, 0);
     for _ in 0..20 {
-        let truth = pose(&mut chance, &Sought::Rigid);
+        let truth = pose(&mut random, &Sought::Rigid);
         let mut rows = Vec::new();
         for _ in 0..3 {
-            let x = chance.in_cube();
-            let planes = [chance.direction(), chance.direction()].map(|n| (n, -n.dot(&x)));
+            let x = random.in_cube();
+            let planes = [random.direction(), random.direction()].map(|n| (n, -n.dot(&x)));
             rows.extend(Row::on_edge(truth.inverse().apply(&x.into()).coords, planes));
         }
         let poses = cityweld::solvers::se3_6pt(rows[..].try_into().unwrap());
@@ -261,16 +261,16 @@ fn three_points_on_edges_are_enough() {
 
 #[test]
 fn a_box_corner_has_four_poses_and_level_ground_with_two_walls_has_two() {
-    let mut chance = Chance::new(9);
+    let mut random = Random::stream(9, 0);
     let skew = Vector3::new(0.6, 0.8, 0.0);
     for (normals, expected) in
         [([Vector3::x(), Vector3::y(), Vector3::z()], 4), ([Vector3::x(), skew, Vector3::z()], 2)]
     {
-        let truth = pose(&mut chance, &Sought::Rigid);
+        let truth = pose(&mut random, &Sought::Rigid);
         let mut rows = Vec::new();
         for n in normals {
             for _ in 0..3 {
-                let x = chance.on_plane(&(n, -7.0));
+                let x = random.on_plane(&(n, -7.0));
                 rows.push(Row { point: truth.inverse().apply(&x.into()).coords, normal: n, offset: -7.0 });
             }
         }
@@ -282,9 +282,9 @@ fn a_box_corner_has_four_poses_and_level_ground_with_two_walls_has_two() {
 
 #[test]
 fn turning_or_moving_either_frame_moves_the_poses_with_it() {
-    let mut chance = Chance::new(10);
-    let case = sample(&mut chance, &Sought::Similarity, &[2, 2, 2, 1]);
-    let shift = pose(&mut chance, &Sought::Rigid);
+    let mut random = Random::stream(10, 0);
+    let case = sample(&mut random, &Sought::Similarity, &[2, 2, 2, 1]);
+    let shift = pose(&mut random, &Sought::Rigid);
     let moved: Vec<Row> = case
         .rows
         .iter()
@@ -307,17 +307,17 @@ fn turning_or_moving_either_frame_moves_the_poses_with_it() {
 
 #[test]
 fn walls_without_ground_are_refused_with_their_reason() {
-    let mut chance = Chance::new(12);
-    let mut rows = sample(&mut chance, &Sought::Rigid, &[2, 2, 1, 1]).rows;
+    let mut random = Random::stream(12, 0);
+    let mut rows = sample(&mut random, &Sought::Rigid, &[2, 2, 1, 1]).rows;
     for row in &mut rows {
         row.normal = Vector3::new(row.normal.x, row.normal.y, 0.0).normalize();
     }
     assert_eq!(solve(&Sought::Rigid, &rows), Err(Degeneracy::CoplanarNormals));
-    let rows = sample(&mut chance, &Sought::Rigid, &[3, 2]).rows;
+    let rows = sample(&mut random, &Sought::Rigid, &[3, 2]).rows;
     assert!(matches!(solve(&Sought::Rigid, &rows), Err(Degeneracy::TooFewRows { rows: 5, unknowns: 6 })));
-    let rows = sample(&mut chance, &Sought::Similarity, &[3, 3, 3]).rows;
+    let rows = sample(&mut random, &Sought::Similarity, &[3, 3, 3]).rows;
     assert_eq!(solve(&Sought::Similarity, &rows), Err(Degeneracy::ConcurrentPlanes));
-    let rows = sample(&mut chance, &Sought::Rigid, &[4, 1, 1]).rows;
+    let rows = sample(&mut random, &Sought::Rigid, &[4, 1, 1]).rows;
     assert_eq!(solve(&Sought::Rigid, &rows), Err(Degeneracy::CrowdedPlane));
 }
 
@@ -373,10 +373,10 @@ fn hostile_problems_are_refused_with_their_place() {
 
 #[test]
 fn coordinates_at_the_limits_of_numbers_leave_no_nan() {
-    let mut chance = Chance::new(13);
+    let mut random = Random::stream(13, 0);
     for exponent in [-1070, -900, -300, 300, 900, 1020] {
         let factor = 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
-        let mut rows = sample(&mut chance, &Sought::Rigid, &[2, 2, 2]).rows;
+        let mut rows = sample(&mut random, &Sought::Rigid, &[2, 2, 2]).rows;
         for row in &mut rows {
             row.point *= factor;
             row.offset *= factor;
@@ -389,16 +389,16 @@ fn coordinates_at_the_limits_of_numbers_leave_no_nan() {
 }
 
 /// Rows that a known pose satisfies: `points` points, each on one of `planes` planes in turn, or all on their own.
-fn many(chance: &mut Chance, points: usize, planes: usize) -> (Vec<Row>, Similarity) {
+fn many(random: &mut Random, points: usize, planes: usize) -> (Vec<Row>, Similarity) {
     let pose = Similarity {
         scale: 2.5,
         rotation: Rotation3::from_euler_angles(0.3, -0.4, 1.9),
         translation: Vector3::new(5.0, -7.0, 0.5),
     };
-    let known: Vec<(Vector3<f64>, f64)> = (0..planes).map(|_| (chance.direction(), 10.0 * chance.normal())).collect();
+    let known: Vec<(Vector3<f64>, f64)> = (0..planes).map(|_| (random.direction(), 10.0 * random.normal())).collect();
     let row = |i: usize| {
         let (normal, offset) = known[i % planes];
-        let anywhere = 20.0 * chance.normal_vector();
+        let anywhere = 20.0 * random.normal_vector();
         let image = anywhere - normal * (normal.dot(&anywhere) + offset);
         Row { point: pose.inverse().apply(&Point3::from(image)).coords, normal, offset }
     };
@@ -407,9 +407,9 @@ fn many(chance: &mut Chance, points: usize, planes: usize) -> (Vec<Row>, Similar
 
 #[test]
 fn tens_of_thousands_of_rows_have_their_one_pose() {
-    let mut chance = Chance::new(31);
+    let mut random = Random::stream(31, 0);
     for planes in [4, 50, 20_000] {
-        let (rows, pose) = many(&mut chance, 20_000, planes);
+        let (rows, pose) = many(&mut random, 20_000, planes);
         let doubled: Vec<Row> = rows.iter().chain(&rows).copied().collect();
         for rows in [rows, doubled] {
             let solutions = solve(&Sought::Similarity, &rows).unwrap();
@@ -424,8 +424,8 @@ fn tens_of_thousands_of_rows_have_their_one_pose() {
 
 #[test]
 fn many_rows_with_a_known_up_have_their_one_pose() {
-    let mut chance = Chance::new(32);
-    let (rows, pose) = many(&mut chance, 5_000, 5_000);
+    let mut random = Random::stream(32, 0);
+    let (rows, pose) = many(&mut random, 5_000, 5_000);
     let up_in_sensor = pose.rotation.inverse() * Vector3::z();
     let sought = Sought::UprightSimilarity(Up::new(&up_in_sensor, &Vector3::z()).unwrap());
     let solutions = solve(&sought, &rows).unwrap();
@@ -435,30 +435,30 @@ fn many_rows_with_a_known_up_have_their_one_pose() {
 
 #[test]
 fn many_rows_that_no_pose_satisfies_have_none() {
-    let mut chance = Chance::new(33);
-    let (mut rows, _) = many(&mut chance, 5_000, 30);
+    let mut random = Random::stream(33, 0);
+    let (mut rows, _) = many(&mut random, 5_000, 30);
     rows[4_000].offset += 0.1;
     assert_eq!(solve(&Sought::Similarity, &rows).unwrap(), []);
 }
 
 // ---- what must not move an answer, and what must not spoil one
 
-fn whole(chance: &mut Chance, most: i32) -> Vector3<f64> {
-    Vector3::from_fn(|_, _| ((2 * most + 1) as f64 * chance.uniform()).floor() - f64::from(most))
+fn whole(random: &mut Random, most: i32) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| ((2 * most + 1) as f64 * random.unit()).floor() - f64::from(most))
 }
 
 /// Minimal problems on small whole numbers, sound ones and degenerate ones: shifts and powers of two change them exactly.
-fn exact_problems(chance: &mut Chance) -> Vec<(Sought, Vec<Row>)> {
+fn exact_problems(random: &mut Random) -> Vec<(Sought, Vec<Row>)> {
     let mut problems = Vec::new();
     for (sought, configurations) in [(Sought::Rigid, &RIGID_MINIMAL[..]), (Sought::Similarity, &SIMILARITY_MINIMAL)] {
         for points in configurations {
             let mut rows = Vec::new();
             for &count in *points {
-                let normal = whole(chance, 9) + Vector3::new(0.0, 0.0, 0.5);
-                let offset = -normal.dot(&whole(chance, 50));
-                rows.extend((0..count).map(|_| Row { point: whole(chance, 50), normal, offset }));
+                let normal = whole(random, 9) + Vector3::new(0.0, 0.0, 0.5);
+                let offset = -normal.dot(&whole(random, 50));
+                rows.extend((0..count).map(|_| Row { point: whole(random, 50), normal, offset }));
             }
-            problems.extend(spoilt(chance, &rows).into_iter().map(|rows| (sought, rows)));
+            problems.extend(spoilt(random, &rows).into_iter().map(|rows| (sought, rows)));
             problems.push((sought, rows));
         }
     }
@@ -471,8 +471,8 @@ const SIMILARITY_MINIMAL: [&[usize]; 6] =
     [&[3, 2, 1, 1], &[3, 1, 1, 1, 1], &[2, 2, 2, 1], &[2, 2, 1, 1, 1], &[2, 1, 1, 1, 1, 1], &[1, 1, 1, 1, 1, 1, 1]];
 
 /// The rows made degenerate: all points on a line, upright planes only, planes through one point, the first three points collinear.
-fn spoilt(chance: &mut Chance, rows: &[Row]) -> [Vec<Row>; 4] {
-    let (from, along, vertex) = (whole(chance, 50), whole(chance, 3) + Vector3::x() * 4.0, whole(chance, 50));
+fn spoilt(random: &mut Random, rows: &[Row]) -> [Vec<Row>; 4] {
+    let (from, along, vertex) = (whole(random, 50), whole(random, 3) + Vector3::x() * 4.0, whole(random, 50));
     let on_line = |k: usize| from + along * k as f64;
     let changed = |change: &dyn Fn(usize, &mut Row)| {
         let mut rows = rows.to_vec();
@@ -499,13 +499,13 @@ fn essence(sought: &Sought, rows: &[Row]) -> Result<Vec<(f64, Matrix3<f64>)>, De
 #[test]
 fn neither_a_far_origin_nor_another_unit_moves_an_answer_or_a_refusal() {
     const FAR: f64 = 1_048_576.0; // 2^20, about a million, so that whole numbers stay exact.
-    let mut chance = Chance::new(14);
+    let mut random = Random::stream(14, 0);
     let (mut answered, mut refused) = (0, 0);
     for _ in 0..10 {
-        for (sought, rows) in exact_problems(&mut chance) {
+        for (sought, rows) in exact_problems(&mut random) {
             let before = essence(&sought, &rows);
             *if before.is_ok() { &mut answered } else { &mut refused } += 1;
-            let shift = whole(&mut chance, 5) * FAR;
+            let shift = whole(&mut random, 5) * FAR;
             let free = if sought.is_similarity() { 1.0 / FAR } else { 1.0 };
             let change = |change: &dyn Fn(&Row) -> Row| -> Vec<Row> { rows.iter().map(change).collect() };
             for (what, moved) in [
@@ -540,38 +540,38 @@ fn agree(before: &[(f64, Matrix3<f64>)], after: &[(f64, Matrix3<f64>)]) -> bool 
 
 #[test]
 fn problems_on_their_way_to_degeneracy_leave_no_nan() {
-    let mut chance = Chance::new(15);
+    let mut random = Random::stream(15, 0);
     for exponent in 0..=20 {
         let share = 10f64.powi(-exponent);
-        for (sought, rows) in exact_problems(&mut chance) {
+        for (sought, rows) in exact_problems(&mut random) {
             let points: Vec<usize> =
                 rows.chunk_by(|a, b| (a.normal, a.offset) == (b.normal, b.offset)).map(<[_]>::len).collect();
             let noisy: Vec<Row> =
-                rows.iter().map(|r| Row { point: r.point + chance.normal_vector() * share, ..*r }).collect();
+                rows.iter().map(|r| Row { point: r.point + random.normal_vector() * share, ..*r }).collect();
             let unit = |r: &Row| Row { normal: r.normal.normalize(), offset: r.offset / r.normal.norm(), ..*r };
             let minimal: Vec<Row> = noisy.iter().map(unit).collect();
-            let thorough = solve(&sought, &noisy).unwrap_or_default();
+            let general = solve(&sought, &noisy).unwrap_or_default();
             let poses = solve_minimal(&sought, &points, &minimal);
-            for pose in poses.iter().chain(thorough.iter().map(|s| &s.object_from_sensor)) {
+            for pose in poses.iter().chain(general.iter().map(|s| &s.object_from_sensor)) {
                 let numbers = pose.rotation.matrix().iter().chain(pose.translation.iter()).chain([&pose.scale]);
                 assert!(numbers.into_iter().all(|v| v.is_finite()) && pose.scale > 0.0, "{pose:?}");
             }
-            assert!(thorough.iter().all(|s| s.residual.is_finite() && s.condition >= cityweld::solvers::NOT_ISOLATED));
+            assert!(general.iter().all(|s| s.residual.is_finite() && s.condition >= cityweld::solvers::NOT_ISOLATED));
         }
     }
 }
 
 #[test]
 fn nearly_parallel_planes_lose_no_pose_far_away() {
-    let mut chance = Chance::new(16);
+    let mut random = Random::stream(16, 0);
     for _ in 0..60 {
-        let sensor_from_object = pose(&mut chance, &Sought::Rigid).inverse();
-        let (first, third) = (chance.plane(), chance.plane());
-        let nearly = (first.0 + chance.direction().cross(&first.0) * 1e-4).normalize();
-        let second = (nearly, -nearly.dot(&chance.in_cube()));
+        let sensor_from_object = pose(&mut random, &Sought::Rigid).inverse();
+        let (first, third) = (random.plane(), random.plane());
+        let nearly = (first.0 + random.direction().cross(&first.0) * 1e-4).normalize();
+        let second = (nearly, -nearly.dot(&random.in_cube()));
         let mut rows = Vec::new();
         for plane in [first, first, first, second, second, third] {
-            let point = sensor_from_object.apply(&chance.on_plane(&plane).into()).coords;
+            let point = sensor_from_object.apply(&random.on_plane(&plane).into()).coords;
             rows.push(Row { point, normal: plane.0, offset: plane.1 });
         }
         let found = solve(&Sought::Rigid, &rows).unwrap().len();
@@ -580,7 +580,7 @@ fn nearly_parallel_planes_lose_no_pose_far_away() {
 }
 
 /// Planes along the axes, points anywhere or in pairs along the axes, poses from the identity over half-turns to any.
-fn aligned_problem(chance: &mut Chance, sought: &Sought, points: &[usize], variant: usize) -> Sample {
+fn aligned_problem(random: &mut Random, sought: &Sought, points: &[usize], variant: usize) -> Sample {
     let turns = [
         Matrix3::identity(),
         Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)),
@@ -589,7 +589,7 @@ fn aligned_problem(chance: &mut Chance, sought: &Sought, points: &[usize], varia
         Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
         Matrix3::new(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0),
     ];
-    let mut truth = pose(chance, sought);
+    let mut truth = pose(random, sought);
     if let Some(turn) = turns.get(variant / 2) {
         truth.rotation = Rotation3::from_matrix_unchecked(*turn);
     }
@@ -597,13 +597,13 @@ fn aligned_problem(chance: &mut Chance, sought: &Sought, points: &[usize], varia
     for (i, &count) in points.iter().enumerate() {
         let mut normal = Vector3::zeros();
         normal[i % 3] = 1.0;
-        let plane = (normal, -100.0 * (chance.uniform() - 0.5));
-        let first = chance.on_plane(&plane);
+        let plane = (normal, -100.0 * (random.unit() - 0.5));
+        let first = random.on_plane(&plane);
         for k in 0..count {
-            let mut x = if k == 0 { first } else { chance.on_plane(&plane) };
+            let mut x = if k == 0 { first } else { random.on_plane(&plane) };
             if k == 1 && variant.is_multiple_of(2) {
                 x = first;
-                x[(i + 1 + (chance.uniform() * 2.0) as usize) % 3] += 10.0 + 30.0 * chance.uniform();
+                x[(i + 1 + (random.unit() * 2.0) as usize) % 3] += 10.0 + 30.0 * random.unit();
             }
             rows.push(Row { point: truth.inverse().apply(&x.into()).coords, normal: plane.0, offset: plane.1 });
         }
@@ -613,16 +613,16 @@ fn aligned_problem(chance: &mut Chance, sought: &Sought, points: &[usize], varia
 
 #[test]
 fn minimal_solvers_find_on_boxes_and_at_half_turns_what_the_thorough_solver_finds() {
-    let mut chance = Chance::new(17);
+    let mut random = Random::stream(17, 0);
     let (mut asked, mut wrong) = (0, Vec::new());
     for (sought, configurations) in [(Sought::Rigid, &RIGID_MINIMAL[..]), (Sought::Similarity, &SIMILARITY_MINIMAL)] {
         for points in configurations {
             for k in 0..14 * 20 {
-                let Sample { rows, truth } = aligned_problem(&mut chance, &sought, points, k % 14);
-                let Ok(thorough) = solve(&sought, &rows) else { continue };
+                let Sample { rows, truth } = aligned_problem(&mut random, &sought, points, k % 14);
+                let Ok(general) = solve(&sought, &rows) else { continue };
                 // A singular pose, which `solve` leaves out, may be two for a minimal solver.
                 let held = condition_at(&sought, &rows, truth.scale, truth.rotation.matrix());
-                if thorough.iter().fold(held, |least, s| least.min(s.condition)) < 1e-5 {
+                if general.iter().fold(held, |least, s| least.min(s.condition)) < 1e-5 {
                     continue;
                 }
                 let poses = solve_minimal(&sought, points, &rows);
@@ -631,8 +631,8 @@ fn minimal_solvers_find_on_boxes_and_at_half_turns_what_the_thorough_solver_find
                     poses.iter().any(|p| (p.rotation.matrix() - r).norm() < 1e-6)
                 };
                 asked += 1;
-                if poses.len() != thorough.len() || !thorough.iter().all(found) {
-                    wrong.push(format!("{points:?} variant {}: {} of {}", k % 14, poses.len(), thorough.len()));
+                if poses.len() != general.len() || !general.iter().all(found) {
+                    wrong.push(format!("{points:?} variant {}: {} of {}", k % 14, poses.len(), general.len()));
                 }
             }
         }
@@ -642,7 +642,7 @@ fn minimal_solvers_find_on_boxes_and_at_half_turns_what_the_thorough_solver_find
 
 #[test]
 fn right_angled_corners_give_all_their_twins() {
-    let mut chance = Chance::new(18);
+    let mut random = Random::stream(18, 0);
     let skew = Vector3::new(0.6, 0.8, 0.0);
     for (normals, points, expected) in [
         ([Vector3::x(), Vector3::y(), Vector3::z()], [3, 3, 1], 4),
@@ -653,11 +653,11 @@ fn right_angled_corners_give_all_their_twins() {
         ([Vector3::x(), skew, Vector3::z()], [3, 2, 2], 2),
     ] {
         for _ in 0..20 {
-            let truth = pose(&mut chance, &Sought::Rigid);
+            let truth = pose(&mut random, &Sought::Rigid);
             let mut rows = Vec::new();
             for (normal, count) in normals.into_iter().zip(points) {
                 for _ in 0..count {
-                    let x = chance.on_plane(&(normal, 11.0));
+                    let x = random.on_plane(&(normal, 11.0));
                     rows.push(Row { point: truth.inverse().apply(&x.into()).coords, normal, offset: 11.0 });
                 }
             }
@@ -669,22 +669,22 @@ fn right_angled_corners_give_all_their_twins() {
 
 #[test]
 fn a_vertex_an_edge_and_a_face_are_enough() {
-    let mut chance = Chance::new(19);
+    let mut random = Random::stream(19, 0);
     for _ in 0..20 {
-        let truth = pose(&mut chance, &Sought::Rigid);
+        let truth = pose(&mut random, &Sought::Rigid);
         let to_sensor = |x: Vector3<f64>| truth.inverse().apply(&x.into()).coords;
-        let planes_through = |chance: &mut Chance, x: &Vector3<f64>| {
-            let normal = chance.direction();
+        let planes_through = |random: &mut Random, x: &Vector3<f64>| {
+            let normal = random.direction();
             (normal, -normal.dot(x))
         };
-        let [vertex, edge, face] = [0; 3].map(|_| chance.in_cube());
-        let mut rows = Row::on_vertex(to_sensor(vertex), [0; 3].map(|_| planes_through(&mut chance, &vertex))).to_vec();
-        rows.extend(Row::on_edge(to_sensor(edge), [0; 2].map(|_| planes_through(&mut chance, &edge))));
-        let (normal, offset) = planes_through(&mut chance, &face);
+        let [vertex, edge, face] = [0; 3].map(|_| random.in_cube());
+        let mut rows = Row::on_vertex(to_sensor(vertex), [0; 3].map(|_| planes_through(&mut random, &vertex))).to_vec();
+        rows.extend(Row::on_edge(to_sensor(edge), [0; 2].map(|_| planes_through(&mut random, &edge))));
+        let (normal, offset) = planes_through(&mut random, &face);
         rows.push(Row { point: to_sensor(face), normal, offset });
         let minimal = cityweld::solvers::se3_6pt(rows[..].try_into().unwrap());
-        let thorough = solve(&Sought::Rigid, &rows).unwrap();
-        assert!(minimal.len() == thorough.len() && minimal.len() <= 4, "{} {}", minimal.len(), thorough.len());
+        let general = solve(&Sought::Rigid, &rows).unwrap();
+        assert!(minimal.len() == general.len() && minimal.len() <= 4, "{} {}", minimal.len(), general.len());
         let error = minimal.iter().map(|p| angle_between_rad(&p.rotation, &truth.rotation)).fold(9.0, f64::min);
         assert!(error < 1e-8, "{error:e}");
     }

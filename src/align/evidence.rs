@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::correspondence::{Basin, Candidate, PointPlaneMatch, PoseRefiner, Scene, refined_to_end};
 use crate::evidence::{CandidateEvaluation, EvaluatedCandidate};
 use crate::geometry::Similarity;
-use crate::robust::{Chart, Matrix7};
+use crate::robust::{Matrix7, MotionParameters};
 use crate::uncertainty::{Estimate, SystematicErrors, estimate};
 use crate::verdict::{Evidence, GivenScale, PoseInformation, Rival};
 
@@ -96,14 +96,14 @@ fn hold(
     accuracy_m: Option<f64>,
 ) -> PoseInformation {
     let (scene, limits) = (refiner.scene, refiner.scene.limits);
-    let chart = best.map_or_else(|| chart_of_prior(refiner), |best| best.chart);
+    let parameters = best.map_or_else(|| parameters_of_prior(refiner), |best| best.parameters);
     PoseInformation {
-        chart: Chart { center: chart.center + scene.city.model.origin, ..chart },
+        parameters: MotionParameters { center: parameters.center + scene.city.model.origin, ..parameters },
         information: best.map_or_else(Matrix7::zeros, |best| best.information),
         without: best.map_or(Vec::new(), |best| best.without.clone()),
-        prior: scene.prior.information(&chart),
+        prior: scene.prior.information(&parameters),
         given_scale,
-        accuracy_m: accuracy_m.unwrap_or(limits.verdict.accuracy_m(chart.radius)),
+        accuracy_m: accuracy_m.unwrap_or(limits.verdict.accuracy_m(parameters.radius)),
         confirmed_times: limits.uncertainty.confirmed_times,
     }
 }
@@ -126,8 +126,8 @@ fn rival(refiner: &PoseRefiner, evaluated_candidate: &EvaluatedCandidate, city_f
 }
 
 /// Where nothing was found: about the place that is expected.
-fn chart_of_prior(refiner: &PoseRefiner) -> Chart {
-    refiner.assess(&[], &refiner.scene.prior.expected(), 0.0).chart
+fn parameters_of_prior(refiner: &PoseRefiner) -> MotionParameters {
+    refiner.assess(&[], &refiner.scene.prior.expected(), 0.0).parameters
 }
 
 /// The scale that the data have, were it free, from a pose on.
@@ -143,9 +143,9 @@ pub(super) fn scale_of_data(
     let near = free.refine(&patch_points, &best.candidate.refined.city_from_level, &gates_m).city_from_level;
     let pose = &refined_to_end(free, &near).city_from_level;
     let found = estimate(free, pose);
-    let (pose, chart) = (&found.city_from_level, found.chart);
+    let (pose, parameters) = (&found.city_from_level, found.parameters);
     // What is known beforehand of all else keeps an open height from opening the scale.
-    let mut information = scene.prior.information(&chart);
+    let mut information = scene.prior.information(&parameters);
     information[(6, 6)] = 0.0;
     information += found.information;
     let variance = information.try_inverse().map_or(0.0, |covariance| covariance[(6, 6)]);
@@ -153,7 +153,7 @@ pub(super) fn scale_of_data(
     GivenScale {
         given,
         of_data: given * pose.scale,
-        log_sigma: if variance > 0.0 { variance.sqrt() / chart.radius } else { f64::INFINITY },
+        log_sigma: if variance > 0.0 { variance.sqrt() / parameters.radius } else { f64::INFINITY },
         bits: evaluation.weigh(pose).bits,
     }
 }

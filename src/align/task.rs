@@ -10,7 +10,7 @@ use crate::evidence::CandidateEvaluation;
 use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
 use crate::imagery::LiftedSuperpixels;
 use crate::limits::Limits;
-use crate::observer::{Cancelled, Observer, Stage, go_on};
+use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
 use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
@@ -31,7 +31,7 @@ pub fn align(
     if let Some(obstacle) = obstacle::find(city, reconstruction, &patches, &start, &options.limits) {
         return Ok(report::refused(&obstacle, city, &patches, options));
     }
-    go_on(observer)?;
+    check_cancelled(observer)?;
     observer.progress(Stage::City, 0, 0);
     let task = Task { city, patches: &patches, start: &start, options, observer };
     let answer = task.answer()?;
@@ -93,7 +93,7 @@ impl<'a> Task<'a> {
         let evaluated = evaluation
             .as_ref()
             .map_or(Vec::new(), |evaluation| evidence::evaluated_candidates(evaluation, &view.scene, &view.candidates));
-        go_on(self.observer)?;
+        check_cancelled(self.observer)?;
         let refiner = PoseRefiner::new(&view.scene);
         let given_scale = self
             .options
@@ -128,7 +128,7 @@ impl<'a> Task<'a> {
         let scene = Scene::new(self.city, self.patches, self.start, motion, upright, &self.options.limits);
         let hypotheses = search(&scene, self.options.seed, self.observer)?;
         let candidates = candidates(&PoseRefiner::new(&scene), &hypotheses);
-        go_on(self.observer)?;
+        check_cancelled(self.observer)?;
         Ok(View { upright: *upright, scene, hypotheses, candidates })
     }
 

@@ -124,9 +124,9 @@ pub struct AlignArgs {
     /// freely, as far as three sigmas of the start's tilt), or X,Y,Z of any length
     #[arg(long, value_name = "UP", default_value = "auto", allow_hyphen_values = true)]
     pub up: UpArg,
-    /// Chance of a wrong pose called aligned that may be taken, above 0 and below 1
+    /// Probability of a wrong pose called aligned that may be taken, above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
-    pub false_alarm: Chance,
+    pub false_alarm: Probability,
     /// Axis that is up in OBJ files
     #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
     pub city_up: CityUpArg,
@@ -292,14 +292,14 @@ pub struct Scale(pub f64);
 
 /// A chance, above 0 and below 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chance(pub f64);
+pub struct Probability(pub f64);
 
-impl FromStr for Chance {
+impl FromStr for Probability {
     type Err = String;
 
-    fn from_str(text: &str) -> Result<Chance, String> {
+    fn from_str(text: &str) -> Result<Probability, String> {
         match text.trim().parse() {
-            Ok(chance) if chance > 0.0 && chance < 1.0 => Ok(Chance(chance)),
+            Ok(chance) if chance > 0.0 && chance < 1.0 => Ok(Probability(chance)),
             _ => Err("expected a number above 0 and below 1, such as 0.001".to_owned()),
         }
     }

@@ -8,7 +8,7 @@ use crate::limits::Limits;
 use anyhow::{Context, Result};
 
 use super::align::carry_out;
-use super::args::{AlignArgs, Chance, CityUpArg, DemoArgs, UpArg};
+use super::args::{AlignArgs, CityUpArg, DemoArgs, Probability, UpArg};
 use super::plan::{AlignPlan, keeps_inputs};
 use super::{Outcome, Session};
 
@@ -98,7 +98,7 @@ fn align_args(sample: &Path) -> AlignArgs {
         scale: None,
         accuracy: None,
         up: UpArg::Auto,
-        false_alarm: Chance(Limits::default().verdict.false_alarm),
+        false_alarm: Probability(Limits::default().verdict.false_alarm),
         city_up: CityUpArg::Z,
     }
 }

@@ -7,7 +7,7 @@ use crate::export::{OutputKind, merge_report, write_merge};
 use crate::format::read_start;
 use crate::imagery::SuperpixelSource;
 use crate::merge::{MergeOptions, MergePart, merge};
-use crate::merging::{EvidenceChoice, JoinOptions, Merge, MergeVerdict};
+use crate::merging::{JoinOptions, Merge, MergeVerdict, PairSources};
 use crate::planes::PreparedCity;
 use crate::reconstruction::read_reconstruction;
 use anyhow::{Result, ensure};
@@ -22,11 +22,11 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
     let output = session.begin(&args.output, OutputKind::Folder)?;
     let voice = &session.voice;
     let city = read_the_city(args, session)?;
-    let evidence = match args.evidence {
-        EvidenceArg::All => EvidenceChoice::All,
-        EvidenceArg::Planes => EvidenceChoice::Planes,
+    let sources = match args.evidence {
+        EvidenceArg::All => PairSources::All,
+        EvidenceArg::Planes => PairSources::Planes,
     };
-    let join = JoinOptions { seed: session.common.seed, evidence, ..JoinOptions::default() };
+    let join = JoinOptions { seed: session.common.seed, sources, ..JoinOptions::default() };
     let options = MergeOptions { superpixels: superpixel_source(args), join };
     // The parts go before the files are written: a model is as large as they are.
     let merged = merge(read_parts(args, session)?, city.as_ref(), &options, voice)?;

@@ -1,12 +1,12 @@
 //! From many hypotheses to a few distinct poses, each as good as it can be made.
 //!
-//! Method       stages with more sample points and narrower gates refine poses, walk them along weak directions and rank fewer and fewer of them. From the second stage on a
+//! Method       stages with more sample points and narrower gates refine poses, move them along weak directions and rank fewer and fewer of them. From the second stage on a
 //!              pose also pays for every line of sight that it would block, and better poses in the basins beside join before the
 //!              last. Distinct poses stay distinct to the end: the verdict reads the distance to the runner-up.
 
 use rayon::prelude::*;
 
-use super::line_search::{basin_hopping, walk_free_directions, walk_weak_directions};
+use super::line_search::{basin_hopping, search_free_directions, search_weak_directions};
 use super::pose_search::largest_shift;
 use super::refine::{PoseRefiner, RefinedPose};
 use super::scene::Scene;
@@ -80,7 +80,13 @@ pub fn refined_to_end(refiner: &PoseRefiner, pose: &Similarity) -> RefinedPose {
     let (patch_points, all) =
         (sample_points(scene.level_cloud.patch_points), sample_points(scene.level_cloud.sample_points.len()));
     let sharp = refiner.sharpen(&patch_points, pose, scene.gate_unit_m);
-    walk_free_directions(refiner, &all, sharp, scene.gate_unit_m, scene.limits.walk.settling_units * scene.gate_unit_m)
+    search_free_directions(
+        refiner,
+        &all,
+        sharp,
+        scene.gate_unit_m,
+        scene.limits.line_search.settling_units * scene.gate_unit_m,
+    )
 }
 
 fn sample_points(count: usize) -> Vec<u32> {
@@ -89,7 +95,7 @@ fn sample_points(count: usize) -> Vec<u32> {
 
 /// Better poses in basins beside those of the candidates, which stay: one that is far enough off remains a rival.
 fn beside(refiner: &PoseRefiner, candidates: &[Candidate]) -> Vec<Candidate> {
-    let point_subset = refiner.scene.level_cloud.point_subset(refiner.scene.limits.walk.basin_points);
+    let point_subset = refiner.scene.level_cloud.point_subset(refiner.scene.limits.line_search.basin_points);
     candidates
         .par_iter()
         .map(|c| unjudged(refiner, &basin_hopping(refiner, &point_subset, &c.refined.city_from_level)))
@@ -106,9 +112,10 @@ fn improved(refiner: &PoseRefiner, stage: &StageLimits, candidate: &Candidate) -
     let point_subset = point_subset(scene, stage);
     let gates_m: Vec<f64> = stage.gates_units.iter().map(|g| g * scene.gate_unit_m).collect();
     let first = refiner.refine(&point_subset, &candidate.refined.city_from_level, &gates_m);
-    let spectrum = first.chart.spectrum(&first.equations.full());
+    let spectrum = first.parameters.spectrum(&first.equations.full());
     let (scoring_points, gate_m) = (scoring_points(scene, stage), stage.ranking_gate_units * scene.gate_unit_m);
-    let slid = walk_weak_directions(scene, &scoring_points, &first.chart, &spectrum, &first.city_from_level, gate_m);
+    let slid =
+        search_weak_directions(scene, &scoring_points, &first.parameters, &spectrum, &first.city_from_level, gate_m);
     let refined = if slid == first.city_from_level { first } else { refiner.refine(&point_subset, &slid, &gates_m) };
     judged(scene, stage, Candidate { refined, ..candidate.clone() })
 }
@@ -116,7 +123,7 @@ fn improved(refiner: &PoseRefiner, stage: &StageLimits, candidate: &Candidate) -
 /// What speaks for and against the pose of a candidate, by the point subset of a stage.
 fn judged(scene: &Scene, stage: &StageLimits, candidate: Candidate) -> Candidate {
     let pose = candidate.refined.city_from_level;
-    let occluded = if stage.sight { blocked_share(scene, &pose) } else { 0.0 };
+    let occluded = if stage.occlusion { blocked_share(scene, &pose) } else { 0.0 };
     let share = scene.inlier_share(&scoring_points(scene, stage), &pose, stage.ranking_gate_units * scene.gate_unit_m);
     Candidate { share, occluded, prior_cost: scene.prior.cost(&pose), ..candidate }
 }

@@ -2,9 +2,9 @@
 //!
 //! Question     where along a direction does the pose explain most?
 //! Method       the pose is moved by each offset along the direction and valued, in parallel; the best wins, the nearest of equals.
-//!              Three walks use it: along what the data hold loosely, by the score ([`walk_weak_directions`]); along all directions at once into
+//!              Three searches use it: along what the data hold loosely, by the score ([`search_weak_directions`]); along all directions at once into
 //!              neighbouring basins, each place refined first ([`basin_hopping`]; basin hopping, Wales and Doye 1997, with fixed moves instead of random ones);
-//!              and along what nothing holds, by the planes that find points ([`walk_free_directions`])
+//!              and along what nothing holds, by the planes that find points ([`search_free_directions`])
 //! Why          a wall's top and foot tell the height softly, which says nothing to a least-squares step; a prior inside Gauss-Newton
 //!              would drag the pose off its facets. And facades have several parallel planes some decimetres apart: a cloud may
 //!              settle with some of its patches one plane off, held as firmly as at the right place
@@ -15,12 +15,12 @@ use super::prior::Prior;
 use super::refine::{PoseRefiner, RefinedPose};
 use super::scene::Scene;
 use crate::geometry::Similarity;
-use crate::robust::{Chart, Direction, Spectrum};
+use crate::robust::{Direction, MotionParameters, Spectrum};
 
 /// Places along a direction.
 pub(super) struct Stride {
     pub direction: Direction,
-    /// Metres at the chart's radius.
+    /// Metres at the motion's radius.
     pub offsets_m: Vec<f64>,
 }
 
@@ -36,15 +36,15 @@ pub(super) type Valued = (f64, Similarity);
 
 /// The best of `from` and the places of some strides from it; `value` gives what a place is worth and the pose to go on with from
 /// there. Places beyond the prior's reach do not count.
-pub(super) fn walk(
+pub(super) fn line_search(
     prior: &Prior,
-    chart: &Chart,
+    parameters: &MotionParameters,
     from: Valued,
     strides: &[Stride],
     value: impl Fn(&Similarity) -> Valued + Sync,
 ) -> Valued {
     let place = |(direction, offset_m): (&Direction, f64)| {
-        let moved = chart.moved(&from.1, &(direction.unit * offset_m));
+        let moved = parameters.moved(&from.1, &(direction.unit * offset_m));
         let valued = prior.reaches(&moved).then(|| value(&moved));
         valued.filter(|(_, pose)| prior.reaches(pose))
     };
@@ -53,35 +53,35 @@ pub(super) fn walk(
     places.into_iter().flatten().fold(from, |best, place| if place.0 > best.0 { place } else { best })
 }
 
-/// The pose after a walk along each loose direction in turn, by the score of `point_subset` within `gate_m`.
-pub fn walk_weak_directions(
+/// The pose after a search along each loose direction in turn, by the score of `point_subset` within `gate_m`.
+pub fn search_weak_directions(
     scene: &Scene,
     point_subset: &[u32],
-    chart: &Chart,
+    parameters: &MotionParameters,
     spectrum: &Spectrum,
     pose: &Similarity,
     gate_m: f64,
 ) -> Similarity {
-    let limits = &scene.limits.walk;
+    let limits = &scene.limits.line_search;
     let step_m = limits.step_of_gate * gate_m;
     let value = |pose: &Similarity| (scene.score(point_subset, pose, gate_m), *pose);
     let mut loose = spectrum.directions().iter().filter(|d| d.sigma_m > limits.loose_m).peekable();
     if loose.peek().is_none() {
         return *pose;
     }
-    let walked = loose.fold(value(pose), |best, direction| {
+    let moved = loose.fold(value(pose), |best, direction| {
         // A loose direction that is held a little ends where its own sigmas end.
         let steps = (scene.limits.reach_sigmas * direction.sigma_m / step_m).min(f64::from(limits.most_steps)).ceil();
         let stride = Stride { direction: *direction, offsets_m: Stride::even(step_m, steps as i32) };
-        walk(&scene.prior, chart, best, &[stride], value)
+        line_search(&scene.prior, parameters, best, &[stride], value)
     });
-    walked.1
+    moved.1
 }
 
 /// The best pose about `pose` in its own basin and those beside it, by the score of `point_subset`.
 pub fn basin_hopping(refiner: &PoseRefiner, point_subset: &[u32], pose: &Similarity) -> Similarity {
     let scene = refiner.scene;
-    let (limits, gate_unit_m) = (&scene.limits.walk, scene.gate_unit_m);
+    let (limits, gate_unit_m) = (&scene.limits.line_search, scene.gate_unit_m);
     let gates_m = limits.basin_gates_units.map(|g| g * gate_unit_m);
     let refined = |pose: &Similarity| {
         let refined = refiner.refine(point_subset, pose, &gates_m);
@@ -91,10 +91,10 @@ pub fn basin_hopping(refiner: &PoseRefiner, point_subset: &[u32], pose: &Similar
     let (mut best, mut from) = refined(pose);
     for _ in 0..limits.most_rounds {
         let begun = best;
-        let spectrum = from.chart.spectrum(&from.equations.full());
+        let spectrum = from.parameters.spectrum(&from.equations.full());
         let stride = |direction: &Direction| Stride { direction: *direction, offsets_m: offsets_m.clone() };
         let strides: Vec<Stride> = spectrum.directions().iter().map(stride).collect();
-        best = walk(&scene.prior, &from.chart, best, &strides, |pose| refined(pose).0);
+        best = line_search(&scene.prior, &from.parameters, best, &strides, |pose| refined(pose).0);
         if best.1 == begun.1 {
             break;
         }
@@ -108,7 +108,7 @@ pub fn basin_hopping(refiner: &PoseRefiner, point_subset: &[u32], pose: &Similar
 ///
 /// The few points of a grazed roof that alone hold a height count for nothing among the points of the walls; but by the
 /// root of its points every plane has a say, and at the right height several find theirs at once.
-pub fn walk_free_directions(
+pub fn search_free_directions(
     refiner: &PoseRefiner,
     point_subset: &[u32],
     refined: RefinedPose,
@@ -118,14 +118,14 @@ pub fn walk_free_directions(
     // A finer step than the gate of a loose point is wide: none may fall between.
     let step_m = refiner.point_sigma_m;
     let steps = (reach_m / step_m).ceil() as i32;
-    let spectrum = refined.chart.spectrum(&refined.equations.full());
+    let spectrum = refined.parameters.spectrum(&refined.equations.full());
     let most_sigma_m = refiner.scene.limits.refinement.most_sigma_m;
     let mut pose = refined.city_from_level;
     for direction in spectrum.directions().iter().filter(|d| d.sigma_m > most_sigma_m) {
-        let free = without_unmoved(refiner, point_subset, &refined.chart, &pose, direction, gate_m);
+        let free = without_unmoved(refiner, point_subset, &refined.parameters, &pose, direction, gate_m);
         let support = |pose: &Similarity| (planes_with_points(refiner, &free, pose, gate_m), *pose);
         let stride = Stride { direction: *direction, offsets_m: Stride::even(step_m, steps) };
-        pose = walk(&refiner.scene.prior, &refined.chart, support(&pose), &[stride], support).1;
+        pose = line_search(&refiner.scene.prior, &refined.parameters, support(&pose), &[stride], support).1;
     }
     refiner.sharpen(point_subset, &pose, gate_m)
 }
@@ -141,15 +141,16 @@ pub(super) fn planes_with_points(refiner: &PoseRefiner, point_subset: &[u32], po
 fn without_unmoved(
     refiner: &PoseRefiner,
     point_subset: &[u32],
-    chart: &Chart,
+    parameters: &MotionParameters,
     pose: &Similarity,
     direction: &Direction,
     gate_m: f64,
 ) -> Vec<u32> {
-    let unmoved = refiner.scene.limits.walk.unmoved_share;
+    let unmoved = refiner.scene.limits.line_search.unmoved_share;
     let mut stays = vec![false; refiner.scene.level_cloud.sample_points.len()];
     for row in refiner.point_plane_matches(point_subset, pose, gate_m) {
-        stays[row.sample_point as usize] = chart.row(&row.place, &row.hit.normal).dot(&direction.unit).abs() < unmoved;
+        stays[row.sample_point as usize] =
+            parameters.row(&row.place, &row.hit.normal).dot(&direction.unit).abs() < unmoved;
     }
     point_subset
         .iter()

@@ -17,7 +17,7 @@ use super::search::sought;
 use super::solver_choice::{cheapest, solver_costs};
 use crate::geometry::Similarity;
 use crate::limits::NullPoseLimits;
-use crate::robust::{Chart, Direction, Problem, Random};
+use crate::robust::{Direction, MotionParameters, Problem, Random};
 
 /// So many poses at distinct places, none of which is that of `answer`; fewer where the samples allow no more.
 pub fn null_poses(refiner: &PoseRefiner, answer: &Basin, seed: u64, limits: &NullPoseLimits) -> Vec<RefinedPose> {
@@ -88,7 +88,7 @@ const STREAMS_OF_SEARCH: u64 = 1 << 32;
 /// The place of an answer, as far as the data hold it: what leads there is no other place.
 pub struct Basin<'a> {
     pose: Similarity,
-    chart: Chart,
+    parameters: MotionParameters,
     /// The directions along which nothing holds the answer.
     open: Vec<Direction>,
     limits: &'a NullPoseLimits,
@@ -97,15 +97,15 @@ pub struct Basin<'a> {
 impl<'a> Basin<'a> {
     /// The place of a refined pose; directions that are held worse than `most_sigma_m` are open.
     pub fn of(answer: &RefinedPose, most_sigma_m: f64, limits: &'a NullPoseLimits) -> Basin<'a> {
-        let spectrum = answer.chart.spectrum(&answer.equations.full());
+        let spectrum = answer.parameters.spectrum(&answer.equations.full());
         let open = spectrum.directions().iter().filter(|d| d.sigma_m > most_sigma_m).copied().collect();
-        Basin { pose: answer.city_from_level, chart: answer.chart, open, limits }
+        Basin { pose: answer.city_from_level, parameters: answer.parameters, open, limits }
     }
 
     /// The place of a pose of which nothing is open.
     pub fn around(refiner: &PoseRefiner<'a>, pose: &Similarity) -> Basin<'a> {
-        let RefinedPose { chart, .. } = refiner.assess(&[], pose, 0.0);
-        Basin { pose: *pose, chart, open: Vec::new(), limits: &refiner.scene.limits.null_poses }
+        let RefinedPose { parameters, .. } = refiner.assess(&[], pose, 0.0);
+        Basin { pose: *pose, parameters, open: Vec::new(), limits: &refiner.scene.limits.null_poses }
     }
 
     pub fn pose(&self) -> &Similarity {
@@ -114,12 +114,12 @@ impl<'a> Basin<'a> {
 
     /// Whether refinement leads a pose there, but for what is open.
     pub fn has(&self, pose: &Similarity) -> bool {
-        let mut apart = self.chart.between(&self.pose, pose);
+        let mut apart = self.parameters.between(&self.pose, pose);
         for direction in &self.open {
             apart -= direction.unit * direction.unit.dot(&apart);
         }
         let part = |first: usize| apart.fixed_rows::<3>(first).norm();
-        let r = self.chart.radius;
+        let r = self.parameters.radius;
         part(0) < self.limits.basin_rad * r
             && part(3) < self.limits.basin_m
             && apart[6].abs() < self.limits.basin_log_scale * r

@@ -32,7 +32,7 @@ impl Scene<'_> {
 
     /// Whether the city stands between a point and a camera.
     pub fn occludes(&self, place: &Point3<f64>, camera: &Point3<f64>) -> bool {
-        let limits = &self.limits.sight;
+        let limits = &self.limits.occlusion;
         let sight = camera - place;
         let length = sight.norm() - limits.surroundings_m - limits.camera_slack_m;
         let Some(direction) = sight.try_normalize(0.0).filter(|_| length > 0.0) else { return false };
@@ -42,7 +42,7 @@ impl Scene<'_> {
     /// Whether a point lies under a roof or under the ground, and so far inside that neither eaves nor the model's errors explain it: for
     /// clouds without cameras.
     pub fn buries(&self, place: &Point3<f64>) -> bool {
-        let inside_m = self.limits.sight.surroundings_m + self.limits.sight.camera_slack_m;
+        let inside_m = self.limits.occlusion.surroundings_m + self.limits.occlusion.camera_slack_m;
         let sides = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
         sides.iter().all(|[x, y]| {
             let from = place + inside_m * Vector3::new(*x, *y, 1.0);
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn neither_the_surroundings_of_a_point_nor_those_of_its_camera_hide_it() {
-        let limits = crate::limits::Limits::default().sight;
+        let limits = crate::limits::Limits::default().occlusion;
         let inside = |depth_m: f64| hidden([6.0, depth_m, 3.0], &[BEFORE]);
         assert!(!inside(0.9 * limits.surroundings_m) && inside(1.1 * limits.surroundings_m));
         let camera_inside = |depth_m: f64| hidden([6.0, -9.0, 1.7], &[[6.0, depth_m, 1.7]]);

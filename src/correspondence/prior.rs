@@ -11,7 +11,7 @@ use nalgebra::{Matrix4, Vector4};
 
 use crate::geometry::{Matrix3, Point3, Similarity, Start, StartSigmas, Vector3};
 use crate::limits::Limits;
-use crate::robust::{Chart, Matrix7, Motion};
+use crate::robust::{Matrix7, Motion, MotionParameters};
 
 /// A Gaussian about a start, in the level frame.
 #[derive(Clone, Debug)]
@@ -165,10 +165,10 @@ impl Prior {
         }
     }
 
-    /// Information in the chart's unknowns, 1 / m^2.
-    pub fn information(&self, chart: &Chart) -> Matrix7 {
+    /// Information in the motion's unknowns, 1 / m^2.
+    pub fn information(&self, parameters: &MotionParameters) -> Matrix7 {
         let StartSigmas { position_m, height_m, heading_rad, tilt_rad, log_scale } = self.sigmas;
-        let r = chart.radius;
+        let r = parameters.radius;
         let sigmas = [r * tilt_rad, r * tilt_rad, r * heading_rad, position_m, position_m, height_m, r * log_scale];
         Matrix7::from_diagonal(&sigmas.map(|s: f64| s.powi(-2)).into())
     }

@@ -15,13 +15,13 @@ use rayon::prelude::*;
 use super::scene::Scene;
 use crate::geometry::{Point3, Similarity};
 use crate::planes::Hit;
-use crate::robust::{Chart, Motion, NormalEquations, tukey_weight};
+use crate::robust::{Motion, MotionParameters, NormalEquations, tukey_weight};
 
 /// A refined pose and what holds it.
 #[derive(Clone, Debug)]
 pub struct RefinedPose {
     pub city_from_level: Similarity,
-    pub chart: Chart,
+    pub parameters: MotionParameters,
     /// In units of 1 / m^2, with the error model applied.
     pub equations: NormalEquations,
 }
@@ -71,14 +71,17 @@ impl<'a> PoseRefiner<'a> {
     /// Refines `pose` with the given gates (metres of the start), one step each, using the sample points of `point_subset`.
     pub fn refine(&self, point_subset: &[u32], pose: &Similarity, gates_m: &[f64]) -> RefinedPose {
         let mut pose = *pose;
-        let mut refined =
-            RefinedPose { city_from_level: pose, chart: self.chart(&pose), equations: NormalEquations::default() };
+        let mut refined = RefinedPose {
+            city_from_level: pose,
+            parameters: self.parameters(&pose),
+            equations: NormalEquations::default(),
+        };
         for &gate_m in gates_m {
-            let chart = self.chart(&pose);
+            let parameters = self.parameters(&pose);
             let rows = self.point_plane_matches(point_subset, &pose, gate_m);
-            let equations = self.equations(&chart, &rows);
-            pose = chart.moved(&pose, &chart.step(&equations, self.scene.limits.refinement.most_sigma_m));
-            refined = RefinedPose { city_from_level: pose, chart, equations };
+            let equations = self.equations(&parameters, &rows);
+            pose = parameters.moved(&pose, &parameters.step(&equations, self.scene.limits.refinement.most_sigma_m));
+            refined = RefinedPose { city_from_level: pose, parameters, equations };
         }
         refined
     }
@@ -100,9 +103,9 @@ impl<'a> PoseRefiner<'a> {
 
     /// The same pose with its information, nothing moved.
     pub fn assess(&self, point_subset: &[u32], pose: &Similarity, gate_m: f64) -> RefinedPose {
-        let chart = self.chart(pose);
-        let equations = self.equations(&chart, &self.point_plane_matches(point_subset, pose, gate_m));
-        RefinedPose { city_from_level: *pose, chart, equations }
+        let parameters = self.parameters(pose);
+        let equations = self.equations(&parameters, &self.point_plane_matches(point_subset, pose, gate_m));
+        RefinedPose { city_from_level: *pose, parameters, equations }
     }
 
     /// Which sample point of `point_subset` lies on which plane within `gate_m` (metres of the start), sorted by plane.
@@ -130,22 +133,22 @@ impl<'a> PoseRefiner<'a> {
         rows
     }
 
-    fn equations(&self, chart: &Chart, rows: &[PointPlaneMatch]) -> NormalEquations {
+    fn equations(&self, parameters: &MotionParameters, rows: &[PointPlaneMatch]) -> NormalEquations {
         let mut sums = NormalEquations::default();
         for of_plane in rows.chunk_by(|a, b| a.hit.plane == b.hit.plane) {
-            sums.merge(&self.equations_of_plane(chart, of_plane), 1.0);
+            sums.merge(&self.equations_of_plane(parameters, of_plane), 1.0);
         }
         sums
     }
 
     /// What the sample points on one plane say, with the model's error common to all of them.
-    pub fn equations_of_plane(&self, chart: &Chart, rows: &[PointPlaneMatch]) -> NormalEquations {
+    pub fn equations_of_plane(&self, parameters: &MotionParameters, rows: &[PointPlaneMatch]) -> NormalEquations {
         let mut plane = NormalEquations::default();
         let mut count = 0.0;
         for row in rows {
             // At the foot on the facet: a smaller scale must not seem to make the noise across it smaller.
             let foot = row.place - row.hit.normal * row.hit.across_m;
-            plane.add(&chart.row(&foot, &row.hit.normal), row.hit.across_m, row.weight);
+            plane.add(&parameters.row(&foot, &row.hit.normal), row.hit.across_m, row.weight);
             count += row.weight;
         }
         let variance = self.point_sigma_m.powi(2) + count * self.scene.limits.plane_sigma_m.powi(2);
@@ -154,9 +157,9 @@ impl<'a> PoseRefiner<'a> {
         scaled
     }
 
-    fn chart(&self, pose: &Similarity) -> Chart {
+    fn parameters(&self, pose: &Similarity) -> MotionParameters {
         let radius = (self.scene.level_cloud.radius_m * pose.scale).max(SMALLEST_RADIUS_M);
-        Chart { center: pose.apply(&Point3::origin()), radius, motion: self.motion }
+        MotionParameters { center: pose.apply(&Point3::origin()), radius, motion: self.motion }
     }
 }
 

@@ -52,7 +52,7 @@ impl<'a> Scene<'a> {
         let gate_unit_m = limits.model_unit_m + limits.noise_sigmas * level_cloud.noise_m;
         // A pose may be as much larger than the start as the scale allows, and its gates with it.
         let grid = |gate_units: f64| city.grid(gate_units * gate_unit_m * prior.most_scale());
-        let (narrow_grid, wide_grid) = (grid(limits.walk.basin_gates_units[0]), grid(limits.search.gate_units));
+        let (narrow_grid, wide_grid) = (grid(limits.line_search.basin_gates_units[0]), grid(limits.search.gate_units));
         let reach = prior.reach(&level_cloud.extent());
         Scene { city, limits, level_cloud, prior, reach, narrow_grid, wide_grid, gate_unit_m }
     }

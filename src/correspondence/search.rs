@@ -6,7 +6,7 @@ use super::sampler::Sampler;
 use super::scene::Scene;
 use super::solver_choice::{cheapest, solver_costs};
 use crate::geometry::{Similarity, Vector3};
-use crate::observer::{Cancelled, Observer, Stage, go_on};
+use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
 use crate::robust::{Motion, Problem, Random, Ranked, RansacOptions, ransac};
 use crate::solvers::{Sought, Up};
 
@@ -47,7 +47,7 @@ pub fn search(scene: &Scene, seed: u64, observer: &dyn Observer) -> Result<Hypot
         observer.progress(Stage::Search, n, options.most_samples);
         !observer.is_cancelled()
     });
-    go_on(observer)?;
+    check_cancelled(observer)?;
     Ok(Hypotheses { ranked, solver: format!("{} {configuration}", sought.name()), samples })
 }
 

@@ -157,7 +157,7 @@ struct EdgeJson<'a> {
     inliers: usize,
     rms: f64,
     used: bool,
-    reason: Option<&'a str>,
+    reason: Option<String>,
 }
 
 impl EdgeJson<'_> {
@@ -170,8 +170,8 @@ impl EdgeJson<'_> {
             pairs: edge.pairs,
             inliers: edge.inliers,
             rms: edge.rms,
-            used: edge.used,
-            reason: edge.reason.as_deref(),
+            used: edge.is_used(),
+            reason: edge.reason(),
         }
     }
 }

@@ -5,7 +5,7 @@ pub mod colmap;
 pub mod file;
 mod escape;
 pub mod gltf;
-mod kind;
+mod json_kind;
 pub mod obj;
 mod placement;
 mod problem;
@@ -18,7 +18,7 @@ pub use alignment::{StoredAlignment, read_alignment};
 pub use escape::escaped;
 #[cfg(feature = "cli")]
 pub use escape::escaped_json;
-pub use kind::JsonKind;
+pub use json_kind::JsonKind;
 pub use placement::PlacementError;
 pub use problem::{
     IllFormed, LARGEST_PROBLEM_BYTES, Primitive, ProblemKind, StoredPairs, StoredPlane, StoredUp, read_problem,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::kind::JsonKind;
+use super::json_kind::JsonKind;
 use super::text::{LARGEST_TEXT_BYTES, read_text};
 use crate::geometry::{Matrix3, NotASimilarity, Similarity, StartError, Vector3};
 

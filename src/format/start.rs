@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::alignment::{Spread, StoredAlignment, parse_alignment};
-use super::kind::JsonKind;
+use super::json_kind::JsonKind;
 use super::placement::{PlacementError, SimilarityRecord, parse_json, read_named};
 use crate::geometry::{Start, StartError, StartSigmas};
 

@@ -13,7 +13,7 @@ use super::photos::{decode_photo, open_photo};
 use super::size;
 use super::superpixels::{SuperpixelOptions, cut_superpixels};
 use super::{ImageryError, ImageryWarning, LabelMap, SuperpixelSource};
-use crate::observer::{Observer, Stage, go_on};
+use crate::observer::{Observer, Stage, check_cancelled};
 use crate::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
 
 /// One superpixel of one image with the points whose observations fall on it.
@@ -69,7 +69,7 @@ pub fn lift_superpixels_of(
         .found
         .par_iter()
         .map(|(index, path)| {
-            go_on(observer)?;
+            check_cancelled(observer)?;
             let lifted = lift_image(reconstruction, *index, path, source, options, &memory);
             observer.progress(Stage::Superpixels, done.fetch_add(1, Ordering::Relaxed) + 1, files.found.len());
             lifted

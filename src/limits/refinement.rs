@@ -40,7 +40,7 @@ impl Default for RefinementLimits {
                     sample_points: 400,
                     gates_units: &[5.0, 5.0, 4.0, 3.3, 2.7],
                     ranking_gate_units: 2.3,
-                    sight: false,
+                    occlusion: false,
                     basins: false,
                     keep: 16,
                 },
@@ -48,7 +48,7 @@ impl Default for RefinementLimits {
                     sample_points: 1500,
                     gates_units: &[2.7, 2.3, 2.0, 1.7, 1.7],
                     ranking_gate_units: 1.3,
-                    sight: true,
+                    occlusion: true,
                     basins: false,
                     keep: 6,
                 },
@@ -56,7 +56,7 @@ impl Default for RefinementLimits {
                     sample_points: usize::MAX,
                     gates_units: &[1.7, 1.3, 1.0, 1.0],
                     ranking_gate_units: 1.0,
-                    sight: true,
+                    occlusion: true,
                     basins: true,
                     keep: 6,
                 },
@@ -76,7 +76,7 @@ pub struct StageLimits {
     pub gates_units: &'static [f64],
     pub ranking_gate_units: f64,
     /// Whether lines of sight count.
-    pub sight: bool,
+    pub occlusion: bool,
     /// Whether better poses in the basins beside join first.
     pub basins: bool,
     /// Poses that go on.
@@ -86,9 +86,9 @@ pub struct StageLimits {
 /// How poses are moved along what the data hold loosely or not at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineSearchLimits {
-    /// Directions held worse than this are walked by the score. Chosen: a window's reveal.
+    /// Directions held worse than this are searched by the score. Chosen: a window's reveal.
     pub loose_m: f64,
-    /// Step of that walk in gates. Derived: the score changes by little over half a gate.
+    /// Step of that search in gates. Derived: the score changes by little over half a gate.
     pub step_of_gate: f64,
     /// Its greatest number of steps to either side. Chosen: a bound for starts that know nothing.
     pub most_steps: i32,
@@ -100,7 +100,7 @@ pub struct LineSearchLimits {
     pub basin_points: usize,
     /// Rounds of such moves. Chosen.
     pub most_rounds: usize,
-    /// A walk by the score ends within this many units of the right place. Chosen.
+    /// A search by the score ends within this many units of the right place. Chosen.
     pub settling_units: f64,
     /// A plane whose distance changes by less than this share of a motion is not left by it. Chosen.
     pub unmoved_share: f64,

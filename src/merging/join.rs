@@ -6,11 +6,11 @@ use super::ledger::Ledger;
 use super::limits::MergeLimits;
 use super::network::solve;
 use super::outcome::{Edge, Merge};
-use super::pairwise::{Comparison, EvidenceChoice};
+use super::pairwise::{Comparison, PairSources};
 use super::part::Part;
 use super::prepared::PreparedPart;
 use crate::geometry::Similarity;
-use crate::observer::{Observer, Stage, go_on};
+use crate::observer::{Observer, Stage, check_cancelled};
 use crate::reconstruction::Reconstruction;
 
 /// What the user may set.
@@ -18,7 +18,7 @@ use crate::reconstruction::Reconstruction;
 pub struct JoinOptions {
     /// Same seed, same answer, whatever the number of threads.
     pub seed: u64,
-    pub evidence: EvidenceChoice,
+    pub sources: PairSources,
     pub limits: MergeLimits,
 }
 
@@ -28,12 +28,12 @@ pub fn join(parts: &[Part], options: &JoinOptions, observer: &dyn Observer) -> R
     observer.progress(Stage::ComparingParts, 0, 0);
     let order = canonical_order(parts);
     let prepared: Vec<PreparedPart<'_>> = parts.iter().map(|part| PreparedPart::of(part, limits)).collect();
-    let JoinOptions { seed, evidence, .. } = *options;
-    let pairs = Comparison { parts: &prepared, order: &order, evidence, limits, seed, observer }.pairs()?;
+    let JoinOptions { seed, sources, .. } = *options;
+    let pairs = Comparison { parts: &prepared, order: &order, sources, limits, seed, observer }.pairs()?;
     let solved = solve(&prepared, &order, pairs, limits);
     drop(prepared);
 
-    go_on(observer)?;
+    check_cancelled(observer)?;
     observer.progress(Stage::JoiningParts, 0, 0);
     let places: Vec<Option<Similarity>> = solved.places.iter().map(|p| p.merged_from_part).collect();
     let placed: Vec<usize> = order.into_iter().filter(|&p| places[p].is_some()).collect();
@@ -69,7 +69,7 @@ fn warnings(parts: &[Part], edges: &[Edge]) -> Vec<String> {
 fn disagreement(parts: &[Part], edge: &Edge) -> Option<String> {
     let (a, b) = (&parts[edge.a], &parts[edge.b]);
     let has_planes = a.superpixels.is_some() && b.superpixels.is_some();
-    let told = edge.reason.as_ref().filter(|_| edge.used && has_planes)?;
+    let told = edge.note.as_ref().filter(|_| edge.is_used() && has_planes)?;
     Some(format!("{} and {}: {told}", a.name, b.name))
 }
 

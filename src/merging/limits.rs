@@ -19,7 +19,7 @@ pub struct MergeLimits {
     pub fit: FitLimits,
     pub search: PairSearchLimits,
     pub sources: SourceLimits,
-    pub judge: PairJudgeLimits,
+    pub decision: PairDecisionLimits,
     pub network: NetworkLimits,
     pub fuse: FuseLimits,
 }
@@ -138,7 +138,7 @@ pub struct SourceLimits {
 
 /// Whether two parts belong together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PairJudgeLimits {
+pub struct PairDecisionLimits {
     /// What agrees must exceed chance by this factor. Chosen.
     pub chance_factor: f64,
     /// Coincident keypoints must exceed chance by this many of its standard deviations as well. Chosen: beyond the 3.1 that
@@ -228,7 +228,7 @@ impl Default for MergeLimits {
             fit: FitLimits::default(),
             search: PairSearchLimits::default(),
             sources: SourceLimits { disagree_sigmas: 4.7, on_plane: 4e-3, contradicted_share: 0.5, elsewhere: 0.05 },
-            judge: PairJudgeLimits::default(),
+            decision: PairDecisionLimits::default(),
             network: NetworkLimits { edge_floor: 5e-3, pull_sigmas: 5.0, overlap_floors: 2.0 },
             fuse: FuseLimits { bend: 3e-3, far_from_keypoint_share: 0.02 },
         }
@@ -290,9 +290,9 @@ impl Default for PairSearchLimits {
     }
 }
 
-impl Default for PairJudgeLimits {
+impl Default for PairDecisionLimits {
     fn default() -> Self {
-        PairJudgeLimits {
+        PairDecisionLimits {
             chance_factor: 3.0,
             chance_sigmas: 5.0,
             fewest_pairs: 12,

@@ -11,6 +11,7 @@
 //! Fails when   two parts share no photograph and no anchor, or their shared photographs have too few keypoints in common
 
 mod error;
+mod fault;
 mod extent;
 mod fuse;
 mod join;
@@ -26,9 +27,10 @@ mod shared_photos;
 mod surfaces;
 
 pub use error::MergeError;
+pub use fault::{EdgeFault, PairFault};
 pub use join::{JoinOptions, join};
 pub use ledger::{Account, DropReason, Ledger, Unbalanced};
 pub use limits::MergeLimits;
 pub use outcome::{Edge, EdgeSource, Fused, Merge, MergeVerdict, MergedFrame, PartPlace, PartSupport};
-pub use pairwise::EvidenceChoice;
+pub use pairwise::PairSources;
 pub use part::{Anchor, Part};

@@ -1,5 +1,6 @@
 //! What comes out of a merge: a verdict, every part's place, the edges between them, one model.
 
+use super::fault::EdgeFault;
 use super::ledger::Ledger;
 use crate::geometry::Similarity;
 use crate::reconstruction::Reconstruction;
@@ -113,9 +114,10 @@ pub struct Edge {
     pub inliers: usize,
     /// Root mean square of the inliers, in the merged frame's units where the parts are placed, else in those of `a`.
     pub rms: f64,
-    pub used: bool,
-    /// Why it is not used, or which of its sources was left out.
-    pub reason: Option<String>,
+    /// Why it is not used; `None` where it is.
+    pub refusal: Option<EdgeFault>,
+    /// Which of its sources was left out, or disagrees with the others.
+    pub note: Option<String>,
 }
 
 /// What an edge was measured on.
@@ -141,6 +143,16 @@ impl EdgeSource {
 }
 
 impl Edge {
+    /// Whether it helps to place the parts.
+    pub fn is_used(&self) -> bool {
+        self.refusal.is_none()
+    }
+
+    /// Why it is not used, or else what is to be said of its sources.
+    pub fn reason(&self) -> Option<String> {
+        self.refusal.as_ref().map(ToString::to_string).or_else(|| self.note.clone())
+    }
+
     pub(super) fn touches(&self, part: usize) -> bool {
         self.a == part || self.b == part
     }

@@ -4,7 +4,7 @@ use super::extent::Extent;
 use crate::geometry::Similarity;
 use crate::imagery::LiftedSuperpixels;
 use crate::reconstruction::Reconstruction;
-use crate::robust::{Chart, Matrix7};
+use crate::robust::{Matrix7, MotionParameters};
 use crate::verdict::{Alignment, Freedom, Support, Verdict};
 
 /// One of the reconstructions to be joined.
@@ -26,8 +26,8 @@ pub struct Anchor {
     /// The alignment's verdict: only where it says so is the place relied on.
     pub verdict: Verdict,
     /// Centre and radius that make the seven unknowns of `information` lengths, common frame.
-    pub chart: Chart,
-    /// Inverse of the alignment's covariance, in the chart's unknowns.
+    pub parameters: MotionParameters,
+    /// Inverse of the alignment's covariance, in the motion's unknowns.
     pub information: Matrix7,
     /// What the alignment said.
     pub reason: String,
@@ -44,14 +44,14 @@ impl Anchor {
     pub fn of(alignment: &Alignment, sfm: &Reconstruction, fallback: Similarity) -> Anchor {
         let common_from_part = alignment.best_candidate.unwrap_or(fallback);
         let radius = common_from_part.scale * Extent::of(&sfm.points).radius;
-        let chart = Chart::of_similarity(alignment.center, radius);
+        let parameters = MotionParameters::of_similarity(alignment.center, radius);
         // The report's covariance is in radians, metres and log scale.
         let lengths = Matrix7::from_diagonal(&[radius, radius, radius, 1.0, 1.0, 1.0, radius].into());
         let covariance = Matrix7::from_fn(|i, j| alignment.covariance[i][j]);
         Anchor {
             common_from_part,
             verdict: alignment.verdict,
-            chart,
+            parameters,
             information: (lengths * covariance * lengths).try_inverse().unwrap_or_else(Matrix7::zeros),
             reason: format!("in the city {}: {}", alignment.verdict.word(), alignment.reason),
             freedoms: alignment.freedoms.clone(),

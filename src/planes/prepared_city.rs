@@ -31,7 +31,7 @@ const REACH_RATIO: f64 = 1.19;
 impl PreparedCity {
     /// A city whose exposure is judged as [`Limits::default`] says.
     pub fn new(model: CityModel) -> PreparedCity {
-        PreparedCity::with_limits(model, &Limits::default().exposure)
+        PreparedCity::with_limits(model, &Limits::default().facet_visibility)
     }
 
     pub fn with_limits(model: CityModel, limits: &FacetVisibilityLimits) -> PreparedCity {

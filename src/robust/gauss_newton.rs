@@ -25,7 +25,7 @@ pub enum Motion {
 
 /// The unknowns of a motion about a scene: its centre and radius, which make all of them lengths, and which of them there are.
 #[derive(Clone, Copy, Debug)]
-pub struct Chart {
+pub struct MotionParameters {
     pub center: Point3<f64>,
     /// Metres.
     pub radius: f64,
@@ -65,10 +65,10 @@ impl Motion {
     }
 }
 
-impl Chart {
+impl MotionParameters {
     /// The unknowns of a similarity.
-    pub fn of_similarity(center: Point3<f64>, radius: f64) -> Chart {
-        Chart { center, radius, motion: Motion::Similarity }
+    pub fn of_similarity(center: Point3<f64>, radius: f64) -> MotionParameters {
+        MotionParameters { center, radius, motion: Motion::Similarity }
     }
 
     /// Derivative of the distance of a point `x` from a plane with normal `n`, per metre of each unknown.
@@ -180,18 +180,19 @@ impl NormalEquations {
 mod tests {
     use super::*;
 
-    const CHART: Chart = Chart { center: Point3::new(3.0, -2.0, 1.0), radius: 10.0, motion: Motion::Similarity };
-    const RIGID: Chart = Chart { motion: Motion::Rigid, ..CHART };
+    const PARAMETERS: MotionParameters =
+        MotionParameters { center: Point3::new(3.0, -2.0, 1.0), radius: 10.0, motion: Motion::Similarity };
+    const RIGID: MotionParameters = MotionParameters { motion: Motion::Rigid, ..PARAMETERS };
 
     #[test]
     fn row_is_the_derivative_of_the_distance() {
         let x = Point3::new(7.0, 4.0, -3.0);
         let n = Vector3::new(0.48, -0.6, 0.64);
-        let row = CHART.row(&x, &n);
+        let row = PARAMETERS.row(&x, &n);
         for k in 0..7 {
             let mut unknowns = Vector7::zeros();
             unknowns[k] = 1e-6;
-            let moved = CHART.moved(&Similarity::identity(), &unknowns).apply(&x);
+            let moved = PARAMETERS.moved(&Similarity::identity(), &unknowns).apply(&x);
             assert!((n.dot(&(moved - x)) / 1e-6 - row[k]).abs() < 1e-6, "unknown {k}");
         }
     }
@@ -200,7 +201,7 @@ mod tests {
     fn the_motion_between_two_poses_leads_from_one_to_the_other() {
         let from = Similarity { scale: 2.0, ..Similarity::identity() };
         let unknowns = Vector7::from_column_slice(&[0.3, -0.1, 0.2, 1.0, 2.0, -0.5, 0.4]);
-        let found = CHART.between(&from, &CHART.moved(&from, &unknowns));
+        let found = PARAMETERS.between(&from, &PARAMETERS.moved(&from, &unknowns));
         assert!((found - unknowns).norm() < 1e-12, "{found}");
     }
 
@@ -208,15 +209,15 @@ mod tests {
     fn of_a_floor() -> NormalEquations {
         let mut sums = NormalEquations::default();
         for (x, y) in [(0.0, 0.0), (5.0, 1.0), (-3.0, 4.0), (2.0, -6.0)] {
-            let p = CHART.center + Vector3::new(x, y, 0.0);
-            sums.add(&CHART.row(&p, &Vector3::z()), 0.5, 100.0);
+            let p = PARAMETERS.center + Vector3::new(x, y, 0.0);
+            sums.add(&PARAMETERS.row(&p, &Vector3::z()), 0.5, 100.0);
         }
         sums
     }
 
     #[test]
     fn moves_only_what_is_held() {
-        let step = CHART.step(&of_a_floor(), 1.0);
+        let step = PARAMETERS.step(&of_a_floor(), 1.0);
         assert!((step[5] + 0.5).abs() < 1e-9, "{step}");
         assert!(step.iter().enumerate().all(|(k, v)| k == 5 || v.abs() < 1e-9), "{step}");
     }
@@ -227,14 +228,14 @@ mod tests {
         let mut sums = of_a_floor();
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
             for side in [4.0, -4.0] {
-                let place = CHART.center + axis * side;
+                let place = PARAMETERS.center + axis * side;
                 sums.add(&RIGID.row(&place, &(axis * side.signum())), 0.4, 100.0);
             }
         }
         let spectrum = RIGID.spectrum(&sums.full());
         assert_eq!(spectrum.directions().len(), 6);
         assert!(spectrum.directions().iter().all(|d| d.unit[6] == 0.0));
-        assert!(CHART.step(&sums, f64::INFINITY)[6].abs() > 0.1);
+        assert!(PARAMETERS.step(&sums, f64::INFINITY)[6].abs() > 0.1);
         let pose = Similarity { scale: 0.1 + 0.2, ..Similarity::identity() };
         let moved = RIGID.moved(&pose, &RIGID.step(&sums, f64::INFINITY));
         assert_eq!(moved.scale.to_bits(), pose.scale.to_bits());
@@ -242,7 +243,7 @@ mod tests {
 
     #[test]
     fn the_loosest_direction_comes_first_and_what_nothing_holds_is_infinitely_loose() {
-        let spectrum = CHART.spectrum(&of_a_floor().full());
+        let spectrum = PARAMETERS.spectrum(&of_a_floor().full());
         let sigmas: Vec<f64> = spectrum.directions().iter().map(|d| d.sigma_m).collect();
         assert!(sigmas.is_sorted_by(|a, b| a >= b) && sigmas.len() == 7, "{sigmas:?}");
         assert!(sigmas[0] > 1e3 && sigmas[6] < 0.1, "{sigmas:?}");

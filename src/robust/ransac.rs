@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use super::random::Random;
+use crate::random::Random;
 
 /// What the loop has to know of a problem.
 pub trait Problem: Sync {
@@ -67,12 +67,12 @@ const ROUND: usize = 32;
 /// A hypothesis confirms a better one when it scores at least this share of it.
 const HIT_SHARE: f64 = 0.7;
 
-/// Runs the loop. The result is sorted by falling score. `go_on` is told how many samples were drawn, and whether
+/// Runs the loop. The result is sorted by falling score. `should_continue` is told how many samples were drawn, and whether
 /// the loop goes on is for it to say.
 pub fn ransac<P: Problem>(
     problem: &P,
     options: &RansacOptions,
-    mut go_on: impl FnMut(usize) -> bool,
+    mut should_continue: impl FnMut(usize) -> bool,
 ) -> (Vec<Ranked<P::Pose>>, usize) {
     let mut kept: Vec<Ranked<P::Pose>> = Vec::new();
     let mut samples = 0;
@@ -86,7 +86,7 @@ pub fn ransac<P: Problem>(
             insert(problem, &mut kept, options.keep, pose, score);
         }
         let is_sure = kept.first().is_some_and(|k| k.hits >= options.enough_hits);
-        if !go_on(samples) || samples >= options.fewest_samples && is_sure {
+        if !should_continue(samples) || samples >= options.fewest_samples && is_sure {
             break;
         }
     }

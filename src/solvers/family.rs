@@ -125,11 +125,11 @@ fn similarity(points_per_plane: &[usize], rows: &[Row]) -> Poses {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solvers::scene::{Chance, sample};
+    use crate::solvers::scene::{Random, sample};
 
     #[test]
     fn a_sample_with_the_wrong_number_of_rows_has_no_poses() {
-        let rows = sample(&mut Chance::new(1), &Sought::Rigid, &[3, 2, 1]).rows;
+        let rows = sample(&mut Random::stream(1, 0), &Sought::Rigid, &[3, 2, 1]).rows;
         assert!(solve_minimal(&Sought::Rigid, &[3, 2, 1], &rows[..5]).is_empty());
         assert!(solve_minimal(&Sought::Rigid, &[3, 2], &rows[..5]).is_empty());
         assert!(solve_minimal(&Sought::Similarity, &[3, 2, 1], &rows).is_empty());

@@ -11,10 +11,10 @@
 //! 2. Translation and scale are linear in it. They are eliminated, and equations of the rotation remain (`elimination`).
 //! 3. Where the sample tells an axis of the rotation, an equation is a line that meets the unit circle (`turn`). Where it tells less,
 //!    the equations are quadratic, and an octic has their solutions (`algebra`).
-//! 4. Newton's method makes each solution exact; more rows than unknowns are polished by Gauss and Newton (`thorough`).
+//! 4. Newton's method makes each solution exact; more rows than unknowns are polished by Gauss and Newton (`general`).
 //! 5. Substitution gives scale and translation.
 //!
-//! `minimal` holds the solvers, one file for each kind of sample; `thorough` takes any rows and tells why a pose is not determined.
+//! `minimal` holds the solvers, one file for each kind of sample; `general` takes any rows and tells why a pose is not determined.
 //!
 //! Names tell the sample: first what is sought (`se3` rotation and translation, `sim3` a scale besides, `upright_` with
 //! known vertical), then the points on each plane where these matter (`321` for (3,2,1); `pair_4pt`: two points on one
@@ -52,11 +52,12 @@ pub mod primitives;
 mod row;
 pub mod scene;
 mod sought;
-mod thorough;
+mod general;
 mod turn;
 mod up;
 
 pub use family::{Configuration, RIGID, SIMILARITY, UPRIGHT_RIGID, UPRIGHT_SIMILARITY, solve_minimal};
+pub use general::{Degeneracy, NOT_ISOLATED, Solution, WEAK, condition_at, refine, solve};
 pub use linear::{LinearFit, linear_least_squares};
 pub use minimal::{
     se3_6pt, se3_321, se3_322, se3_331, se3_332, se3_333, se3_3111, se3_pair_4pt, sim3_7pt, sim3_3211, sim3_31111,
@@ -65,5 +66,4 @@ pub use minimal::{
 pub use poses::{MOST_POSES, Poses};
 pub use row::Row;
 pub use sought::Sought;
-pub use thorough::{Degeneracy, NOT_ISOLATED, Solution, WEAK, condition_at, refine, solve};
 pub use up::Up;

@@ -3,11 +3,8 @@
 //! Planes with uniform normals pass through uniform points of a cube of side 100; points lie uniformly on the planes inside
 //! the cube. The pose that is sought is uniform.
 
-use nalgebra::Quaternion;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
-
-use crate::geometry::{Rotation3, Similarity, UnitQuaternion, Vector3};
+use crate::geometry::{Rotation3, Similarity, Vector3};
+pub use crate::random::Random;
 
 use super::row::Row;
 use super::sought::Sought;
@@ -16,47 +13,11 @@ use super::up::Up;
 /// Side of the cube; the unit is arbitrary.
 pub const SIDE: f64 = 100.0;
 
-/// A seeded stream of numbers, the same on every machine.
-pub struct Chance(ChaCha8Rng);
-
-impl Chance {
-    pub fn new(seed: u64) -> Chance {
-        Chance(ChaCha8Rng::seed_from_u64(seed))
-    }
-
-    /// Uniform in [0, 1).
-    pub fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Standard normal, by Box and Muller.
-    pub fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-
-    pub fn normal_vector(&mut self) -> Vector3<f64> {
-        Vector3::new(self.normal(), self.normal(), self.normal())
-    }
-
-    /// A uniform direction.
-    pub fn direction(&mut self) -> Vector3<f64> {
-        loop {
-            if let Some(unit) = self.normal_vector().try_normalize(1e-3) {
-                return unit;
-            }
-        }
-    }
-
-    /// A uniform rotation.
-    pub fn rotation(&mut self) -> Rotation3<f64> {
-        let q = Quaternion::new(self.normal(), self.normal(), self.normal(), self.normal());
-        UnitQuaternion::new_normalize(q).to_rotation_matrix()
-    }
-
+/// Draws of a scene.
+impl Random {
     /// A uniform point of the cube about the origin.
     pub fn in_cube(&mut self) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| SIDE * (self.uniform() - 0.5))
+        Vector3::from_fn(|_, _| SIDE * (self.unit() - 0.5))
     }
 
     /// A plane of the scene: unit normal and offset.
@@ -74,7 +35,7 @@ impl Chance {
             let shift = self.normal_vector().cross(normal);
             let across = shift.norm();
             // Uniform on a disc that holds the whole section of the cube.
-            x = foot + shift * (SIDE * 1.75 * self.uniform().sqrt() / across);
+            x = foot + shift * (SIDE * 1.75 * self.unit().sqrt() / across);
             if x.amax() <= 0.5 * SIDE {
                 break;
             }
@@ -91,14 +52,14 @@ pub struct Sample {
 
 /// A random sample with so many points on each of so many planes. A known vertical fixes the tilt of the true pose; a
 /// sought scale is log-uniform in [1/10, 10].
-pub fn sample(chance: &mut Chance, sought: &Sought, points_per_plane: &[usize]) -> Sample {
-    let truth = pose(chance, sought);
+pub fn sample(random: &mut Random, sought: &Sought, points_per_plane: &[usize]) -> Sample {
+    let truth = pose(random, sought);
     let inverse = truth.inverse();
     let mut rows = Vec::new();
     for &points in points_per_plane {
-        let plane = chance.plane();
+        let plane = random.plane();
         for _ in 0..points {
-            let point = inverse.apply(&chance.on_plane(&plane).into()).coords;
+            let point = inverse.apply(&random.on_plane(&plane).into()).coords;
             rows.push(Row { point, normal: plane.0, offset: plane.1 });
         }
     }
@@ -106,25 +67,25 @@ pub fn sample(chance: &mut Chance, sought: &Sought, points_per_plane: &[usize]) 
 }
 
 /// A random pose of the kind that is sought.
-pub fn pose(chance: &mut Chance, sought: &Sought) -> Similarity {
+pub fn pose(random: &mut Random, sought: &Sought) -> Similarity {
     let rotation = match sought {
-        Sought::Rigid | Sought::Similarity => chance.rotation(),
+        Sought::Rigid | Sought::Similarity => random.rotation(),
         Sought::UprightRigid(up) | Sought::UprightSimilarity(up) => {
-            let (sin, cos) = (std::f64::consts::TAU * chance.uniform()).sin_cos();
+            let (sin, cos) = (std::f64::consts::TAU * random.unit()).sin_cos();
             Rotation3::from_matrix_unchecked(up.rotation(cos, sin))
         }
     };
     let scale = match sought {
         Sought::Rigid | Sought::UprightRigid(_) => 1.0,
-        Sought::Similarity | Sought::UprightSimilarity(_) => 100f64.powf(chance.uniform() - 0.5),
+        Sought::Similarity | Sought::UprightSimilarity(_) => 100f64.powf(random.unit() - 0.5),
     };
-    Similarity { scale, rotation, translation: chance.in_cube() }
+    Similarity { scale, rotation, translation: random.in_cube() }
 }
 
 /// A random vertical in both frames.
-pub fn up(chance: &mut Chance) -> Up {
+pub fn up(random: &mut Random) -> Up {
     loop {
-        if let Some(up) = Up::new(&chance.direction(), &chance.direction()) {
+        if let Some(up) = Up::new(&random.direction(), &random.direction()) {
             return up;
         }
     }

@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 
 use super::draws::between;
 use crate::geometry::{Point3, Similarity, Vector3, nearest_rotation};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// A slow wave.
 struct Wave {
@@ -33,7 +33,7 @@ pub(super) struct Bend {
 
 impl Bend {
     /// One that moves all but one in a hundred of the points by no more than `share` of their extent.
-    pub(super) fn new(points: &[Point3<f64>], share: f64, chance: &mut Chance) -> Bend {
+    pub(super) fn new(points: &[Point3<f64>], share: f64, random: &mut Random) -> Bend {
         let middle = middle_of(points);
         let scatter: Matrix3<f64> = points.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
         let eigen = scatter.symmetric_eigen();
@@ -42,13 +42,13 @@ impl Bend {
             middle,
             half_extent: (0.5 * extent).max(f64::MIN_POSITIVE),
             axis: eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned(),
-            doming: chance.normal_vector().component_mul(&Vector3::new(1.0, 1.0, 0.7)),
-            drift: 0.6 * chance.normal(),
-            bowl: 0.5 * chance.normal(),
+            doming: random.normal_vector().component_mul(&Vector3::new(1.0, 1.0, 0.7)),
+            drift: 0.6 * random.normal(),
+            bowl: 0.5 * random.normal(),
             waves: std::array::from_fn(|_| Wave {
-                number: between(chance, 0.5, 2.0) * PI * chance.direction(),
-                phase: between(chance, 0.0, TAU),
-                amplitude: 0.5 * chance.normal_vector(),
+                number: between(random, 0.5, 2.0) * PI * random.direction(),
+                phase: between(random, 0.0, TAU),
+                amplitude: 0.5 * random.normal_vector(),
             }),
             // So little that what is left beside the best similarity is linear in it.
             strength: 1e-4 * extent,
@@ -105,8 +105,8 @@ mod tests {
     use crate::synthetic::sfm_from_city;
 
     fn points() -> Vec<Point3<f64>> {
-        let mut chance = Chance::new(4);
-        (0..500).map(|_| Point3::from(chance.in_cube().component_mul(&Vector3::new(1.0, 0.6, 0.2)))).collect()
+        let mut random = Random::stream(4, 0);
+        (0..500).map(|_| Point3::from(random.in_cube().component_mul(&Vector3::new(1.0, 0.6, 0.2)))).collect()
     }
 
     #[test]
@@ -121,7 +121,7 @@ mod tests {
     fn a_bend_leaves_its_share_of_the_extent() {
         let points = points();
         for share in [0.0, 0.001, 0.005] {
-            let bend = Bend::new(&points, share, &mut Chance::new(1));
+            let bend = Bend::new(&points, share, &mut Random::stream(1, 0));
             let pairs: Vec<_> = points.iter().map(|p| (bend.apply(p), *p)).collect();
             let best = best_similarity(&pairs);
             let mut left: Vec<f64> = pairs.iter().map(|(a, b)| (best.apply(a) - b).norm()).collect();

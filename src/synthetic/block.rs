@@ -3,7 +3,7 @@
 use super::house::{Face, House, Plinth, Surface};
 use crate::city::{CityError, CityModel};
 use crate::geometry::{Point3, RayCaster, Rotation3, Vector3};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// How far the modelled ground reaches beyond the houses, metres: chosen, farther than any start of the tests is off.
 const GROUND_REACH_M: f64 = 40.0;
@@ -61,13 +61,13 @@ impl Block {
 
     /// A town of `columns` x `rows` blocks, 60 m from one to the next, each of six houses of seeded sizes, turns and roofs.
     pub fn town(columns: usize, rows: usize, seed: u64) -> Block {
-        let mut chance = Chance::new(seed);
+        let mut random = Random::stream(seed, 0);
         let mut houses = Vec::with_capacity(6 * columns * rows);
         for cell in 0..columns * rows {
             let corner = [(cell % columns) as f64, (cell / columns) as f64].map(|k| TOWN_STEP_M * k);
             for plot in 0..6 {
                 houses.push(town_house(
-                    &mut chance,
+                    &mut random,
                     [corner[0] + 15.0 * f64::from(plot % 3), corner[1] + 20.0 * f64::from(plot / 3)],
                 ));
             }
@@ -141,8 +141,8 @@ impl Block {
 }
 
 /// One house of a town: 8 to 12 m wide, 9 to 16 m deep, 5 to 16 m high, turned by up to 8 degrees.
-pub(super) fn town_house(chance: &mut Chance, [x, y]: [f64; 2]) -> House {
-    let mut between = |low: f64, high: f64| low + (high - low) * chance.uniform();
+pub(super) fn town_house(random: &mut Random, [x, y]: [f64; 2]) -> House {
+    let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
     let size = [between(8.0, 12.0), between(9.0, 16.0), between(5.0, 16.0)];
     let house = if between(0.0, 1.0) < 0.5 { House::flat(size) } else { House::gabled(size, between(2.0, 5.0)) };
     house.turned(between(-8f64, 8.0).to_radians()).at([x, y, 0.0])

@@ -8,7 +8,7 @@ use super::house::Face;
 use super::survey::{Survey, sfm_from_city};
 use crate::geometry::{Camera, CameraModel, Matrix3, Point3, RayCaster, Rotation3, Similarity, Vector3};
 use crate::reconstruction::{CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// A line of sight may end this far before its point, metres: the point's own face.
 const AT_FACE_M: f64 = 1e-3;
@@ -138,7 +138,7 @@ struct Place {
 impl Block {
     /// Photographs from the stations, all by one camera, in their order. Points have at least two observations.
     pub fn capture(&self, stations: &[Station], options: &CaptureOptions) -> Survey {
-        let mut chance = Chance::new(options.seed);
+        let mut random = Random::stream(options.seed, 0);
         let rays = self.rays();
         let mut sfm = Reconstruction {
             cameras: vec![options.camera.clone()],
@@ -148,20 +148,20 @@ impl Block {
             ..Reconstruction::default()
         };
         let mut face_of_point = Vec::new();
-        for place in self.places(options, &mut chance) {
+        for place in self.places(options, &mut random) {
             let seen = sightings(&sfm.images, &options.camera, &rays, &place);
             if seen.len() < 2 {
                 continue;
             }
-            let is_wrong = chance.uniform() < options.outlier_share;
-            let mut at = place.at + options.noise_m * chance.normal_vector();
+            let is_wrong = random.unit() < options.outlier_share;
+            let mut at = place.at + options.noise_m * random.normal_vector();
             if is_wrong {
                 let eye = stations[seen[0].0].center;
                 let [low, high] = WRONG_DEPTH;
-                at = eye + (at - eye) * (low + (high - low) * chance.uniform());
+                at = eye + (at - eye) * (low + (high - low) * random.unit());
             }
             let pixels = seen.iter().map(|(image, [x, y])| {
-                (*image, [x + options.noise_px * chance.normal(), y + options.noise_px * chance.normal()])
+                (*image, [x + options.noise_px * random.normal(), y + options.noise_px * random.normal()])
             });
             add_point(&mut sfm, at, &pixels.collect::<Vec<_>>());
             face_of_point.push(place.face.filter(|_| !is_wrong).map(|(number, _)| number));
@@ -170,7 +170,7 @@ impl Block {
         Survey { sfm, city_from_sfm: options.sfm_from_city.inverse(), face_of_point }
     }
 
-    fn places(&self, options: &CaptureOptions, chance: &mut Chance) -> Vec<Place> {
+    fn places(&self, options: &CaptureOptions, random: &mut Random) -> Vec<Place> {
         let faces: Vec<Face> = self.seen_faces().collect();
         let total: f64 = faces.iter().map(Face::area).sum();
         let mut places = Vec::with_capacity(options.places + options.clutter);
@@ -180,10 +180,10 @@ impl Block {
             let face_so_far = (options.places as f64 * area / total).round() as usize;
             let normal = face.normal();
             while places.len() < face_so_far {
-                places.push(Place { at: point_on(face, chance), face: Some((number, normal)) });
+                places.push(Place { at: point_on(face, random), face: Some((number, normal)) });
             }
         }
-        places.extend((0..options.clutter).map(|_| Place { at: self.point_anywhere(chance), face: None }));
+        places.extend((0..options.clutter).map(|_| Place { at: self.point_anywhere(random), face: None }));
         places
     }
 }

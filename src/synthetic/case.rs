@@ -18,7 +18,7 @@ use super::viewpoints;
 use super::world::{Matter, World};
 use crate::city::{CityError, CityModel};
 use crate::geometry::{Point3, Rotation3, Similarity, Start, StartSigmas, Vector3};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// A town is so many blocks wide and deep: 300 m, so that a wrong place has its own streets.
 const BLOCKS: usize = 5;
@@ -154,29 +154,29 @@ impl Case {
     /// The same with given levels.
     pub fn with(seed: u64, index: u64, setting: Setting, levels: &Levels) -> Option<Case> {
         (0..TRIES).find_map(|try_number| {
-            let seed = stream(seed, TRIES * index + try_number).uniform().to_bits();
+            let seed = stream(seed, TRIES * index + try_number).unit().to_bits();
             Case::at(setting, levels, seed)
         })
     }
 
     fn at(setting: Setting, levels: &Levels, seed: u64) -> Option<Case> {
-        let mut chance = stream(seed, 1);
+        let mut random = stream(seed, 1);
         let town = Quarters::new(BLOCKS, BLOCKS, seed);
         let plan = match setting {
-            Setting::Repeated(kind) => kind.block(&mut chance),
+            Setting::Repeated(kind) => kind.block(&mut random),
             _ => town.block.clone(),
         };
         // A lone wall is there, or the case is none.
         let levels = if setting == Setting::Facade { Levels { changed: 0.0, ..*levels } } else { *levels };
         let site = Site::new(&plan, &levels, seed);
-        let capture = seen(setting, &town, &site.built, &levels, seed, &mut chance)?;
+        let capture = seen(setting, &town, &site.built, &levels, seed, &mut random)?;
         let on_houses = capture.survey.face_of_point.iter().flatten().count();
         if setting != Setting::NoBuilding && on_houses < FEWEST_ON_HOUSES {
             return None;
         }
         // Plans lie along the axes of the grid; towns do not.
-        let turn = between(&mut chance, 0.0, TAU);
-        let place = [between(&mut chance, 80_000.0, 90_000.0), between(&mut chance, 440_000.0, 450_000.0), 3.0];
+        let turn = between(&mut random, 0.0, TAU);
+        let place = [between(&mut random, 80_000.0, 90_000.0), between(&mut random, 440_000.0, 450_000.0), 3.0];
         let city_from_plan = Similarity {
             scale: 1.0,
             rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), turn),
@@ -206,32 +206,32 @@ impl Case {
 
     /// A start for an errand, and the scale that is held.
     pub fn request(&self, errand: Errand) -> Request {
-        let mut chance = stream(self.seed, 10 + errand as u64);
+        let mut random = stream(self.seed, 10 + errand as u64);
         let truth = self.capture.survey.city_from_sfm;
         let middle = median(self.points().iter().map(|x| truth.apply(x)));
         let heading_rad = match self.setting {
-            Setting::Repeated(_) => one_of(&mut chance, &[(30f64, 0.34), (90.0, 0.33), (180.0, 0.33)]).to_radians(),
+            Setting::Repeated(_) => one_of(&mut random, &[(30f64, 0.34), (90.0, 0.33), (180.0, 0.33)]).to_radians(),
             _ => StartSigmas::default().heading_rad,
         };
         let sigmas = StartSigmas { heading_rad, ..StartSigmas::default() };
         let place = match errand {
             Errand::RightPlace | Errand::WrongScale => middle,
-            Errand::WrongPlace => self.elsewhere(&middle, &mut chance),
+            Errand::WrongPlace => self.elsewhere(&middle, &mut random),
             // Towns are planned about the same place, on the ground.
             Errand::ForeignTown => {
                 let far = super::quarters::STEP_M * (BLOCKS - 1) as f64;
-                let [x, y] = [0, 1].map(|_| between(&mut chance, 0.0, far));
+                let [x, y] = [0, 1].map(|_| between(&mut random, 0.0, far));
                 Point3::new(x, y, middle.z - self.modelled.bounds().0.z)
             }
         };
         let any_heading = match errand {
             Errand::RightPlace | Errand::WrongScale => false,
-            Errand::WrongPlace => chance.uniform() < 0.5,
+            Errand::WrongPlace => random.unit() < 0.5,
             Errand::ForeignTown => true,
         };
-        let turn = if any_heading { between(&mut chance, -PI, PI) } else { 0.0 };
-        let mut start = disturbed(&truth, &middle, &place, turn, &sigmas, &mut chance);
-        let fixed_scale = (errand == Errand::WrongScale).then(|| truth.scale * [0.95, 1.05][whole(&mut chance, 0, 2)]);
+        let turn = if any_heading { between(&mut random, -PI, PI) } else { 0.0 };
+        let mut start = disturbed(&truth, &middle, &place, turn, &sigmas, &mut random);
+        let fixed_scale = (errand == Errand::WrongScale).then(|| truth.scale * [0.95, 1.05][whole(&mut random, 0, 2)]);
         if let Some(scale) = fixed_scale {
             start = Similarity::about(&start.inverse().apply(&place), &place, scale, start.rotation);
         }
@@ -242,11 +242,11 @@ impl Case {
     }
 
     /// A place of the same town, 60 to 200 m away.
-    fn elsewhere(&self, middle: &Point3<f64>, chance: &mut Chance) -> Point3<f64> {
+    fn elsewhere(&self, middle: &Point3<f64>, random: &mut Random) -> Point3<f64> {
         let (low, high) = self.modelled.bounds();
         let mut drawn = || {
-            let angle = between(chance, 0.0, TAU);
-            middle + between(chance, WRONG_PLACE_M[0], WRONG_PLACE_M[1]) * Vector3::new(angle.cos(), angle.sin(), 0.0)
+            let angle = between(random, 0.0, TAU);
+            middle + between(random, WRONG_PLACE_M[0], WRONG_PLACE_M[1]) * Vector3::new(angle.cos(), angle.sin(), 0.0)
         };
         let inside = |p: &Point3<f64>| (0..2).all(|k| (low[k]..high[k]).contains(&p[k]));
         let first = drawn();
@@ -261,7 +261,7 @@ fn seen(
     built: &Block,
     levels: &Levels,
     seed: u64,
-    chance: &mut Chance,
+    random: &mut Random,
 ) -> Option<Imperfect> {
     let rays = built.rays();
     let middle = built.middle();
@@ -269,29 +269,29 @@ fn seen(
     let faces: Vec<Face> = built.faces().cloned().collect();
     let mut only = None;
     let stations = match setting {
-        Setting::Street | Setting::NoBuilding => viewpoints::street(town, &rays, chance),
-        Setting::Court => viewpoints::court(town, &rays, chance),
-        Setting::Block => viewpoints::round_block(town, &rays, chance),
+        Setting::Street | Setting::NoBuilding => viewpoints::street(town, &rays, random),
+        Setting::Court => viewpoints::court(town, &rays, random),
+        Setting::Block => viewpoints::round_block(town, &rays, random),
         Setting::Single => {
-            let (place, half_m) = viewpoints::detached_house(town, chance);
-            viewpoints::single(place, half_m, &rays, chance)
+            let (place, half_m) = viewpoints::detached_house(town, random);
+            viewpoints::single(place, half_m, &rays, random)
         }
         Setting::Drone => {
-            let astray = 60.0 * Vector3::new(between(chance, -1.0, 1.0), between(chance, -1.0, 1.0), 0.0);
-            viewpoints::drone(on_ground + astray, between(chance, 18.0, 35.0), chance)
+            let astray = 60.0 * Vector3::new(between(random, -1.0, 1.0), between(random, -1.0, 1.0), 0.0);
+            viewpoints::drone(on_ground + astray, between(random, 18.0, 35.0), random)
         }
-        Setting::Outskirts => viewpoints::outskirts(town, &rays, chance),
+        Setting::Outskirts => viewpoints::outskirts(town, &rays, random),
         Setting::Airborne => Vec::new(),
-        Setting::Repeated(kind) => repeated(kind, built, &rays, chance),
+        Setting::Repeated(kind) => repeated(kind, built, &rays, random),
         Setting::Facade => {
-            let (number, stations) = viewpoints::before_a_wall(&faces, &rays, chance)?;
+            let (number, stations) = viewpoints::before_a_wall(&faces, &rays, random)?;
             only = Some(number);
             stations
         }
     };
     if setting == Setting::Airborne {
-        let astray = 80.0 * Vector3::new(between(chance, -1.0, 1.0), between(chance, -1.0, 1.0), 0.0);
-        let (place, radius_m) = (on_ground + astray, between(chance, 30.0, 60.0));
+        let astray = 80.0 * Vector3::new(between(random, -1.0, 1.0), between(random, -1.0, 1.0), 0.0);
+        let (place, radius_m) = (on_ground + astray, between(random, 30.0, 60.0));
         let world = World::new(built, &place, radius_m, levels, seed);
         return scanned(&world, &place, radius_m, levels, seed);
     }
@@ -301,12 +301,12 @@ fn seen(
     let place = Point3::from(stations.iter().map(|s| s.center.coords).sum::<Vector3<f64>>() / stations.len() as f64);
     let reach_m = if setting == Setting::Drone { REACH_FROM_AIR_M } else { REACH_M };
     let world = World::new(built, &place, reach_m, levels, seed);
-    let with_ground = chance.uniform() < 0.5;
-    photographed(&world, &stations, levels, seed, |met, chance| match (setting, met.matter) {
+    let with_ground = random.unit() < 0.5;
+    photographed(&world, &stations, levels, seed, |met, random| match (setting, met.matter) {
         (Setting::NoBuilding, matter) => !matter.is_house(),
         (Setting::Facade, Matter::Wall | Matter::Roof) => met.face == only,
         (Setting::Facade, Matter::Ground) => with_ground,
-        (Setting::Facade, _) => chance.uniform() < 0.5,
+        (Setting::Facade, _) => random.unit() < 0.5,
         _ => true,
     })
 }
@@ -316,7 +316,7 @@ fn repeated(
     kind: Repeated,
     built: &Block,
     rays: &crate::geometry::RayCaster,
-    chance: &mut Chance,
+    random: &mut Random,
 ) -> Vec<super::Station> {
     let (low, high) = built.bounds();
     let middle = built.middle();
@@ -324,11 +324,11 @@ fn repeated(
     let half_m = 0.5 * (high - low).xy().norm();
     match kind {
         Repeated::Row | Repeated::StreetOfRows => {
-            let from = Point3::new(low.x + between(chance, 0.0, 10.0), -7.0, 0.0);
-            viewpoints::walk(from, 0.0, rays, chance)
+            let from = Point3::new(low.x + between(random, 0.0, 10.0), -7.0, 0.0);
+            viewpoints::walk(from, 0.0, rays, random)
         }
-        Repeated::Detached | Repeated::SymmetricBlock => viewpoints::single(on_ground, half_m, rays, chance),
-        Repeated::Courtyard => viewpoints::drone(on_ground, half_m, chance),
+        Repeated::Detached | Repeated::SymmetricBlock => viewpoints::single(on_ground, half_m, rays, random),
+        Repeated::Courtyard => viewpoints::drone(on_ground, half_m, random),
     }
 }
 
@@ -339,9 +339,9 @@ fn disturbed(
     place: &Point3<f64>,
     turn: f64,
     sigmas: &StartSigmas,
-    chance: &mut Chance,
+    random: &mut Random,
 ) -> Similarity {
-    let mut drawn = |sigma: f64| sigma * chance.normal().clamp(-MOST_SIGMAS, MOST_SIGMAS);
+    let mut drawn = |sigma: f64| sigma * random.normal().clamp(-MOST_SIGMAS, MOST_SIGMAS);
     // A sigma of half a turn says that any heading is as likely.
     let is_open = sigmas.heading_rad > 3.0;
     let heading = if is_open { drawn(1e3) } else { drawn(sigmas.heading_rad) };

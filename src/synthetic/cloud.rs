@@ -5,7 +5,7 @@ use super::house::{Face, Surface};
 use super::survey::{Survey, sfm_from_city};
 use crate::geometry::{Point3, RayCaster, Similarity, Vector3};
 use crate::reconstruction::Reconstruction;
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// How far around the houses the ground is seen, metres.
 pub(super) const SEEN_GROUND_M: f64 = 8.0;
@@ -50,7 +50,7 @@ impl Default for CloudOptions {
 impl Block {
     /// Points all over the outside of the block, and what is wrong among them.
     pub fn cloud(&self, options: &CloudOptions) -> Survey {
-        let mut chance = Chance::new(options.seed);
+        let mut random = Random::stream(options.seed, 0);
         let rays = self.rays();
         let mut points = Vec::new();
         let mut face_of_point = Vec::new();
@@ -61,13 +61,13 @@ impl Block {
                 Surface::Ground => options.points_on_ground,
             };
             let open = |x: &Point3<f64>| is_open(&rays, x, &face.normal());
-            let draws = (0..DRAWS * count).map(|_| point_on(&face, &mut chance));
+            let draws = (0..DRAWS * count).map(|_| point_on(&face, &mut random));
             let on_face: Vec<Point3<f64>> = draws.filter(open).take(count).collect();
-            points.extend(on_face.iter().map(|x| x + options.noise_m * chance.normal_vector()));
+            points.extend(on_face.iter().map(|x| x + options.noise_m * random.normal_vector()));
             face_of_point.resize(points.len(), Some(number));
         }
         let wrong = (options.outlier_share * points.len() as f64) as usize;
-        points.extend((0..wrong).map(|_| self.point_anywhere(&mut chance)));
+        points.extend((0..wrong).map(|_| self.point_anywhere(&mut random)));
         face_of_point.resize(points.len(), None);
         points.iter_mut().for_each(|x| *x = options.sfm_from_city.apply(x));
         let sfm = Reconstruction { points, ..Reconstruction::default() };
@@ -81,18 +81,18 @@ impl Block {
     }
 
     /// A point of the box around what is seen.
-    pub(super) fn point_anywhere(&self, chance: &mut Chance) -> Point3<f64> {
+    pub(super) fn point_anywhere(&self, random: &mut Random) -> Point3<f64> {
         let (low, high) = self.bounds();
         let around = Vector3::new(SEEN_GROUND_M, SEEN_GROUND_M, 0.0);
         let (low, high) = (low - around, high + around);
-        low + (high - low).map(|side| side * chance.uniform())
+        low + (high - low).map(|side| side * random.unit())
     }
 }
 
 /// A uniform point of a face.
-pub(super) fn point_on(face: &Face, chance: &mut Chance) -> Point3<f64> {
-    let mut left = face.area() * chance.uniform();
-    let (mut u, mut v) = (chance.uniform(), chance.uniform());
+pub(super) fn point_on(face: &Face, random: &mut Random) -> Point3<f64> {
+    let mut left = face.area() * random.unit();
+    let (mut u, mut v) = (random.unit(), random.unit());
     if u + v > 1.0 {
         (u, v) = (1.0 - u, 1.0 - v);
     }

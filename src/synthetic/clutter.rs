@@ -5,7 +5,7 @@ use super::draws::{between, count, stream, whole};
 use super::house::{Face, House};
 use super::levels::Levels;
 use crate::geometry::{Point3, RayCaster, Vector3};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// What is expected around a place at level 1.
 const TREES: f64 = 18.0;
@@ -35,27 +35,27 @@ pub(super) fn clutter(
     levels: &Levels,
     seed: u64,
 ) -> Vec<(Thing, Face)> {
-    let mut chance = stream(seed, 0);
+    let mut random = stream(seed, 0);
     let ground = built.bounds().0.z;
     let mut things: Vec<(Thing, House)> = Vec::new();
-    let spot = |chance: &mut Chance, room_m: f64| {
-        let drawn = |chance: &mut Chance| {
-            let [x, y] = [place.x, place.y].map(|at| at + between(chance, -reach_m, reach_m));
+    let spot = |random: &mut Random, room_m: f64| {
+        let drawn = |random: &mut Random| {
+            let [x, y] = [place.x, place.y].map(|at| at + between(random, -reach_m, reach_m));
             Point3::new(x, y, ground)
         };
-        (0..TRIES).map(|_| drawn(chance)).find(|spot| is_open(rays, spot, room_m))
+        (0..TRIES).map(|_| drawn(random)).find(|spot| is_open(rays, spot, room_m))
     };
-    for _ in 0..count(&mut chance, TREES * levels.clutter) {
-        let Some(at) = spot(&mut chance, 1.5) else { continue };
-        let (height, radius) = (between(&mut chance, 4.0, 14.0), between(&mut chance, 1.2, 4.0));
+    for _ in 0..count(&mut random, TREES * levels.clutter) {
+        let Some(at) = spot(&mut random, 1.5) else { continue };
+        let (height, radius) = (between(&mut random, 4.0, 14.0), between(&mut random, 1.2, 4.0));
         let crown = House::flat([2.0 * radius, 2.0 * radius, 0.7 * height]);
-        things.push((Thing::Tree, about(crown, radius, radius, &mut chance, &(at + 0.3 * height * Vector3::z()))));
-        things.push((Thing::Tree, about(House::flat([0.4, 0.4, 0.4 * height]), 0.2, 0.2, &mut chance, &at)));
+        things.push((Thing::Tree, about(crown, radius, radius, &mut random, &(at + 0.3 * height * Vector3::z()))));
+        things.push((Thing::Tree, about(House::flat([0.4, 0.4, 0.4 * height]), 0.2, 0.2, &mut random, &at)));
     }
-    for _ in 0..count(&mut chance, ROWS_OF_CARS * levels.clutter) {
-        let Some(at) = spot(&mut chance, 1.2) else { continue };
-        let heading = heading_of_a_house(built, &mut chance);
-        for i in 0..whole(&mut chance, 1, 6) {
+    for _ in 0..count(&mut random, ROWS_OF_CARS * levels.clutter) {
+        let Some(at) = spot(&mut random, 1.2) else { continue };
+        let heading = heading_of_a_house(built, &mut random);
+        for i in 0..whole(&mut random, 1, 6) {
             let along = Vector3::new(heading.cos(), heading.sin(), 0.0);
             let at = at + CAR_STEP_M * i as f64 * along;
             if is_open(rays, &at, 1.0) {
@@ -64,26 +64,26 @@ pub(super) fn clutter(
             }
         }
     }
-    for _ in 0..count(&mut chance, FENCES * levels.clutter) {
-        let Some(at) = spot(&mut chance, 1.5) else { continue };
-        let size = [between(&mut chance, 4.0, 15.0), between(&mut chance, 0.05, 0.8), between(&mut chance, 0.9, 2.5)];
-        let heading = heading_of_a_house(built, &mut chance);
+    for _ in 0..count(&mut random, FENCES * levels.clutter) {
+        let Some(at) = spot(&mut random, 1.5) else { continue };
+        let size = [between(&mut random, 4.0, 15.0), between(&mut random, 0.05, 0.8), between(&mut random, 0.9, 2.5)];
+        let heading = heading_of_a_house(built, &mut random);
         things.push((Thing::Solid, House::flat(size).turned(heading).at(at.coords.into())));
     }
     things.into_iter().flat_map(|(thing, house)| house.faces.into_iter().map(move |face| (thing, face))).collect()
 }
 
 /// Turned at random about its middle, which is put at a place.
-fn about(house: House, half_width: f64, half_depth: f64, chance: &mut Chance, at: &Point3<f64>) -> House {
-    house.at([-half_width, -half_depth, 0.0]).turned(between(chance, 0.0, 3.0)).at(at.coords.into())
+fn about(house: House, half_width: f64, half_depth: f64, random: &mut Random, at: &Point3<f64>) -> House {
+    house.at([-half_width, -half_depth, 0.0]).turned(between(random, 0.0, 3.0)).at(at.coords.into())
 }
 
 /// Along the front of some house, mostly.
-fn heading_of_a_house(built: &Block, chance: &mut Chance) -> f64 {
-    if built.houses.is_empty() || chance.uniform() < 0.3 {
-        return between(chance, 0.0, std::f64::consts::PI);
+fn heading_of_a_house(built: &Block, random: &mut Random) -> f64 {
+    if built.houses.is_empty() || random.unit() < 0.3 {
+        return between(random, 0.0, std::f64::consts::PI);
     }
-    let house = &built.houses[whole(chance, 0, built.houses.len())];
+    let house = &built.houses[whole(random, 0, built.houses.len())];
     let normal = house.faces[0].normal();
     normal.x.atan2(-normal.y)
 }

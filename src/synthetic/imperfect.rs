@@ -15,7 +15,7 @@ use super::survey::Survey;
 use super::world::{Met, World};
 use crate::geometry::{Camera, CameraModel, Point3, Rotation3, Similarity, Vector3};
 use crate::reconstruction::{Image, Reconstruction};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// Focal length and size of a photograph, pixels: 67 degrees across.
 const FOCAL_PX: f64 = 720.0;
@@ -74,36 +74,36 @@ pub(super) fn photographed(
     stations: &[Station],
     levels: &Levels,
     seed: u64,
-    keeps: impl Fn(&Met, &mut Chance) -> bool,
+    keeps: impl Fn(&Met, &mut Random) -> bool,
 ) -> Option<Imperfect> {
-    let mut chance = stream(seed, 0);
+    let mut random = stream(seed, 0);
     let camera = camera();
-    let images: Vec<Image> = stations.iter().zip(1..).map(|(s, id)| rolled(image(s, id), &mut chance)).collect();
+    let images: Vec<Image> = stations.iter().zip(1..).map(|(s, id)| rolled(image(s, id), &mut random)).collect();
     let is_high = stations.iter().any(|station| station.center.z > 5.0);
     let reach_m = if is_high { FAR_FROM_AIR_M } else { FAR_M };
-    let fewest_views = if chance.uniform() < 0.4 { 2 } else { 3 };
+    let fewest_views = if random.unit() < 0.4 { 2 } else { 3 };
     let sights = SIGHTS_PER_POINT * levels.points / stations.len().max(1) + 100;
     let mut found = Vec::new();
     for (i, photo) in images.iter().enumerate() {
         let eye = stations[i].center;
         for _ in 0..sights {
-            let [u, v] = [0, 1].map(|k| SIZE_PX[k] * (chance.uniform() - 0.5) / FOCAL_PX);
+            let [u, v] = [0, 1].map(|k| SIZE_PX[k] * (random.unit() - 0.5) / FOCAL_PX);
             let direction = (photo.cam_from_sfm_rotation.inverse() * Vector3::new(u, v, 1.0)).normalize();
-            let leaves = chance.normal_vector();
+            let leaves = random.normal_vector();
             let Some(met) = world.meet(&eye, &direction, reach_m, leaves) else { continue };
-            if !(chance.uniform() < met.found && keeps(&met, &mut chance)) {
+            if !(random.unit() < met.found && keeps(&met, &mut random)) {
                 continue;
             }
             let mut seen = vec![i];
             let shows = |j: &usize| *j != i && shows(&images[*j], &camera, world, &eye, &met.at, reach_m);
             let others: Vec<usize> = (0..images.len()).filter(shows).collect();
-            seen.extend(others.into_iter().filter(|_| chance.uniform() < RECOGNISED));
+            seen.extend(others.into_iter().filter(|_| random.unit() < RECOGNISED));
             if seen.len() >= fewest_views {
                 found.push(Found { face: met.face, at: met.at, eye, seen });
             }
         }
     }
-    thin(&mut found, levels.points, &mut chance);
+    thin(&mut found, levels.points, &mut random);
     (found.len() >= FEWEST_POINTS).then(|| reconstructed(&found, images, levels, seed))
 }
 
@@ -115,20 +115,20 @@ pub(super) fn scanned(
     levels: &Levels,
     seed: u64,
 ) -> Option<Imperfect> {
-    let mut chance = stream(seed, 0);
+    let mut random = stream(seed, 0);
     let wanted = 2 * levels.points;
     let mut found = Vec::new();
     for _ in 0..3 * wanted {
-        let (angle, part) = (TAU * chance.uniform(), chance.uniform().sqrt());
+        let (angle, part) = (TAU * random.unit(), random.unit().sqrt());
         let below = middle + radius_m * part * Vector3::new(angle.cos(), angle.sin(), 0.0);
-        let aside = Vector3::new(between(&mut chance, -ASIDE, ASIDE), between(&mut chance, -ASIDE, ASIDE), 1.0);
+        let aside = Vector3::new(between(&mut random, -ASIDE, ASIDE), between(&mut random, -ASIDE, ASIDE), 1.0);
         let eye = below + FLIGHT_M * aside;
-        let leaves = chance.normal_vector();
+        let leaves = random.normal_vector();
         if let Some(met) = world.meet(&eye, &-aside.normalize(), 2.0 * FLIGHT_M, leaves) {
             found.push(Found { face: met.face, at: met.at, eye, seen: Vec::new() });
         }
     }
-    thin(&mut found, wanted, &mut chance);
+    thin(&mut found, wanted, &mut random);
     (found.len() >= FEWEST_POINTS).then(|| reconstructed(&found, Vec::new(), levels, seed))
 }
 
@@ -142,8 +142,8 @@ fn camera() -> Camera {
 }
 
 /// No camera is held level.
-fn rolled(image: Image, chance: &mut Chance) -> Image {
-    let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.03 * chance.normal());
+fn rolled(image: Image, random: &mut Random) -> Image {
+    let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.03 * random.normal());
     Image {
         cam_from_sfm_rotation: roll * image.cam_from_sfm_rotation,
         cam_from_sfm_translation: roll * image.cam_from_sfm_translation,
@@ -164,9 +164,9 @@ fn shows(image: &Image, camera: &Camera, world: &World, eye: &Point3<f64>, at: &
 }
 
 /// In random order, no more than wanted.
-fn thin(found: &mut Vec<Found>, wanted: usize, chance: &mut Chance) {
+fn thin(found: &mut Vec<Found>, wanted: usize, random: &mut Random) {
     for i in 0..found.len().min(wanted) {
-        let other = whole(chance, i, found.len());
+        let other = whole(random, i, found.len());
         found.swap(i, other);
     }
     found.truncate(wanted);
@@ -181,7 +181,7 @@ fn reconstructed(found: &[Found], images: Vec<Image>, levels: &Levels, seed: u64
     let plan_from_bent = best_similarity(&pairs);
     let images: Vec<Image> = images.into_iter().map(|image| moved(image, &bend)).collect();
     let fields: Vec<Field> = images.iter().map(|_| Field::new(&mut noise)).collect();
-    let off = |f: &Found, noise: &mut Chance| {
+    let off = |f: &Found, noise: &mut Random| {
         let line = f.at - f.eye;
         let Some(first) = f.seen.first() else { return levels.noise_px * SCAN_NOISE_M * noise.normal_vector() };
         let nearest = f.seen.iter().map(|i| (f.at - images[*i].center()).norm()).fold(f64::INFINITY, f64::min);
@@ -228,15 +228,15 @@ fn wrong_points(
     bent: &[Point3<f64>],
     images: &[Image],
     levels: &Levels,
-    noise: &mut Chance,
+    noise: &mut Random,
 ) -> Vec<Made> {
     let count = (bent.len() as f64 * levels.outliers / (1.0 - levels.outliers)) as usize;
     let (low, high) = bent.iter().fold((bent[0], bent[0]), |(low, high), x| (low.inf(x), high.sup(x)));
-    let wrong = |noise: &mut Chance| {
+    let wrong = |noise: &mut Random| {
         let i = whole(noise, 0, bent.len());
-        let anywhere = low + (high - low).map(|side| side * noise.uniform());
+        let anywhere = low + (high - low).map(|side| side * noise.unit());
         let astray = found[i].eye + (bent[i] - found[i].eye) * (0.4 * noise.normal()).exp();
-        let is_anywhere = found[i].seen.is_empty() || noise.uniform() < 0.5;
+        let is_anywhere = found[i].seen.is_empty() || noise.unit() < 0.5;
         let mut seen: Vec<usize> = found[i].seen.iter().take(1).copied().collect();
         if let Some(first) = seen.first()
             && images.len() > 1
@@ -255,13 +255,13 @@ fn moved(image: Image, bend: &Bend) -> Image {
 }
 
 /// Where a photograph shows a point, within its frame.
-fn keypoint(sfm: &Reconstruction, image: usize, at: &Point3<f64>, levels: &Levels, noise: &mut Chance) -> [f64; 2] {
+fn keypoint(sfm: &Reconstruction, image: usize, at: &Point3<f64>, levels: &Levels, noise: &mut Random) -> [f64; 2] {
     let pixel = sfm.cameras[0].project(&sfm.images[image].cam_from_sfm(at)).unwrap_or([0.0, 0.0]);
     [0, 1].map(|k| (pixel[k] + 0.5 * levels.noise_px * noise.normal()).clamp(0.0, SIZE_PX[k] - 1.0))
 }
 
 /// Some frame of 1.5 to 40 m to the unit.
-fn any_frame(points: &[Point3<f64>], frame: &mut Chance) -> Similarity {
+fn any_frame(points: &[Point3<f64>], frame: &mut Random) -> Similarity {
     let middle = points.iter().map(|p| p.coords).sum::<Vector3<f64>>() / points.len() as f64;
     let scale = log_between(frame, 1.5, 40.0).recip();
     let rotation = frame.rotation();
@@ -272,9 +272,9 @@ fn any_frame(points: &[Point3<f64>], frame: &mut Chance) -> Similarity {
 struct Field([(f64, f64, f64); 4]);
 
 impl Field {
-    fn new(noise: &mut Chance) -> Field {
+    fn new(noise: &mut Random) -> Field {
         // Some four waves across the picture.
-        Field(std::array::from_fn(|_| (6.0 * noise.normal(), 6.0 * noise.normal(), TAU * noise.uniform())))
+        Field(std::array::from_fn(|_| (6.0 * noise.normal(), 6.0 * noise.normal(), TAU * noise.unit())))
     }
 
     fn at(&self, x_in_cam: &Point3<f64>) -> f64 {

@@ -1,7 +1,7 @@
 //! Levels: how far a capture and its model are from ideal, each fault by its own number.
 
 use super::draws::{log_between, one_of};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// How strong each fault is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,21 +86,21 @@ impl Levels {
     }
 
     /// As things are. Shares chosen after the faults that were seen in real pairs of capture and model.
-    pub fn drawn(chance: &mut Chance) -> Levels {
+    pub fn drawn(random: &mut Random) -> Levels {
         Levels {
-            building_m: one_of(chance, &[(0.03, 0.3), (0.1, 0.5), (0.25, 0.2)]),
-            plane_m: one_of(chance, &[(0.01, 0.3), (0.03, 0.5), (0.08, 0.2)]),
-            eaves_m: one_of(chance, &[(0.0, 0.4), (0.25, 0.4), (0.5, 0.2)]),
-            lids: one_of(chance, &[(false, 0.85), (true, 0.15)]),
-            changed: one_of(chance, &[(0.0, 0.25), (0.1, 0.35), (0.25, 0.4)]),
-            relief: one_of(chance, &[(0.3, 0.3), (1.0, 0.5), (1.5, 0.2)]),
-            clutter: one_of(chance, &[(0.3, 0.3), (1.0, 0.5), (2.0, 0.2)]),
-            outliers: one_of(chance, &[(0.05, 0.4), (0.15, 0.4), (0.4, 0.2)]),
-            noise_px: one_of(chance, &[(0.5, 0.4), (1.0, 0.4), (2.0, 0.2)]),
-            bend: one_of(chance, &[(0.0, 0.15), (0.001, 0.35), (0.0025, 0.3), (0.005, 0.2)]),
-            points: log_between(chance, 630.0, 5000.0) as usize,
-            ground: one_of(chance, &[(true, 0.7), (false, 0.3)]),
-            cameras: one_of(chance, &[(true, 0.65), (false, 0.35)]),
+            building_m: one_of(random, &[(0.03, 0.3), (0.1, 0.5), (0.25, 0.2)]),
+            plane_m: one_of(random, &[(0.01, 0.3), (0.03, 0.5), (0.08, 0.2)]),
+            eaves_m: one_of(random, &[(0.0, 0.4), (0.25, 0.4), (0.5, 0.2)]),
+            lids: one_of(random, &[(false, 0.85), (true, 0.15)]),
+            changed: one_of(random, &[(0.0, 0.25), (0.1, 0.35), (0.25, 0.4)]),
+            relief: one_of(random, &[(0.3, 0.3), (1.0, 0.5), (1.5, 0.2)]),
+            clutter: one_of(random, &[(0.3, 0.3), (1.0, 0.5), (2.0, 0.2)]),
+            outliers: one_of(random, &[(0.05, 0.4), (0.15, 0.4), (0.4, 0.2)]),
+            noise_px: one_of(random, &[(0.5, 0.4), (1.0, 0.4), (2.0, 0.2)]),
+            bend: one_of(random, &[(0.0, 0.15), (0.001, 0.35), (0.0025, 0.3), (0.005, 0.2)]),
+            points: log_between(random, 630.0, 5000.0) as usize,
+            ground: one_of(random, &[(true, 0.7), (false, 0.3)]),
+            cameras: one_of(random, &[(true, 0.65), (false, 0.35)]),
         }
     }
 

@@ -6,7 +6,7 @@ use super::block::{Block, town_house};
 use super::draws::{between, stream, whole};
 use super::house::House;
 use crate::geometry::{Point3, Vector3};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// From one block to the next, and how long the side of a block is: a street of 16 m stays between them.
 pub(super) const STEP_M: f64 = 60.0;
@@ -35,16 +35,16 @@ pub enum Quarter {
 
 impl Quarters {
     pub fn new(columns: usize, rows: usize, seed: u64) -> Quarters {
-        let mut chance = stream(seed, 0);
-        let mut town = Quarters { block: Block::new(Vec::new()), columns, rows, first: whole(&mut chance, 0, 3) };
+        let mut random = stream(seed, 0);
+        let mut town = Quarters { block: Block::new(Vec::new()), columns, rows, first: whole(&mut random, 0, 3) };
         for cell in 0..columns * rows {
             let houses = match town.kind(cell) {
-                Quarter::Court => court(&mut chance),
-                Quarter::Detached => detached(&mut chance),
-                Quarter::Rows => rows_of(&mut chance),
+                Quarter::Court => court(&mut random),
+                Quarter::Detached => detached(&mut random),
+                Quarter::Rows => rows_of(&mut random),
             };
             // Blocks of a town are never quite in line.
-            let turn_rad = between(&mut chance, -4.0, 4.0).to_radians();
+            let turn_rad = between(&mut random, -4.0, 4.0).to_radians();
             let middle = [0.5 * SIDE_M, 0.5 * SIDE_M, 0.0];
             let place = town.middle_of(cell);
             let placed =
@@ -81,8 +81,8 @@ impl Repeated {
         [Repeated::Row, Repeated::StreetOfRows, Repeated::Detached, Repeated::SymmetricBlock, Repeated::Courtyard];
 
     /// Equal houses of seeded sizes.
-    pub fn block(self, chance: &mut Chance) -> Block {
-        let mut drawn = |low: f64, high: f64| between(chance, low, high);
+    pub fn block(self, random: &mut Random) -> Block {
+        let mut drawn = |low: f64, high: f64| between(random, low, high);
         let (width, depth, eaves) = (drawn(5.0, 8.0), drawn(8.0, 11.0), drawn(3.0, 8.0));
         let rise = if drawn(0.0, 1.0) < 0.6 { drawn(1.5, 4.0) } else { 0.0 };
         let house = |size: [f64; 3]| if rise > 0.0 { House::gabled(size, rise) } else { House::flat(size) };
@@ -119,20 +119,20 @@ impl Repeated {
     }
 }
 
-fn detached(chance: &mut Chance) -> Vec<House> {
-    (0..6).map(|plot| town_house(chance, [15.0 * f64::from(plot % 3), 20.0 * f64::from(plot / 3)])).collect()
+fn detached(random: &mut Random) -> Vec<House> {
+    (0..6).map(|plot| town_house(random, [15.0 * f64::from(plot % 3), 20.0 * f64::from(plot / 3)])).collect()
 }
 
 /// A row along x of houses with their fronts at y = 0, from 0 to `length_m`.
-fn row(chance: &mut Chance, length_m: f64) -> Vec<House> {
+fn row(random: &mut Random, length_m: f64) -> Vec<House> {
     let (mut x, mut houses) = (0.0, Vec::new());
     while x < length_m - 1e-9 {
-        let drawn = between(chance, 6.0, 9.0);
+        let drawn = between(random, 6.0, 9.0);
         // What is left must be a house.
         let width = if length_m - x - drawn < 5.0 { length_m - x } else { drawn };
-        let size = [width, between(chance, 9.0, 11.0), between(chance, 7.0, 14.0)];
+        let size = [width, between(random, 9.0, 11.0), between(random, 7.0, 14.0)];
         let house =
-            if chance.uniform() < 0.4 { House::flat(size) } else { House::gabled(size, between(chance, 1.5, 4.0)) };
+            if random.unit() < 0.4 { House::flat(size) } else { House::gabled(size, between(random, 1.5, 4.0)) };
         houses.push(house.at([x, 0.0, 0.0]));
         x += width;
     }
@@ -142,25 +142,25 @@ fn row(chance: &mut Chance, length_m: f64) -> Vec<House> {
 /// The depth of the deepest house of a row: the sides of a court begin behind it.
 const DEEPEST_M: f64 = 11.0;
 
-fn court(chance: &mut Chance) -> Vec<House> {
+fn court(random: &mut Random) -> Vec<House> {
     let side = SIDE_M - 2.0;
     let mut houses = Vec::new();
     // South, east, north, west: turned about the origin, then put into its corner.
     for (k, corner) in [[0.0, 0.0], [side, DEEPEST_M], [side, side], [0.0, side - DEEPEST_M]].iter().enumerate() {
         let length = if k % 2 == 0 { side } else { side - 2.0 * DEEPEST_M };
         let turned =
-            row(chance, length).into_iter().map(|h| h.turned(FRAC_PI_2 * k as f64).at([corner[0], corner[1], 0.0]));
+            row(random, length).into_iter().map(|h| h.turned(FRAC_PI_2 * k as f64).at([corner[0], corner[1], 0.0]));
         houses.extend(turned);
     }
     houses
 }
 
-fn rows_of(chance: &mut Chance) -> Vec<House> {
-    let (width, depth, eaves) = (between(chance, 5.5, 7.5), between(chance, 8.0, 10.0), between(chance, 5.0, 8.0));
-    let rise = between(chance, 2.0, 4.0);
+fn rows_of(random: &mut Random) -> Vec<House> {
+    let (width, depth, eaves) = (between(random, 5.5, 7.5), between(random, 8.0, 10.0), between(random, 5.0, 8.0));
+    let rise = between(random, 2.0, 4.0);
     let count = ((SIDE_M - 2.0) / width) as usize;
     let mut house = || {
-        let raised = if chance.uniform() < 0.3 { 2.8 * chance.uniform() } else { 0.0 };
+        let raised = if random.unit() < 0.3 { 2.8 * random.unit() } else { 0.0 };
         House::gabled([width, depth, eaves + raised], rise)
     };
     let mut houses: Vec<House> = (0..count).map(|i| house().at([width * i as f64, 0.0, 0.0])).collect();

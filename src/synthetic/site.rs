@@ -5,7 +5,7 @@ use super::draws::{between, one_of, stream};
 use super::house::{Face, House};
 use super::levels::Levels;
 use crate::geometry::{Point3, RayCaster, Vector3};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// A turn moves the ends of a house no more than a shift does; small houses are not spun, metres.
 const LEAST_LEVER_M: f64 = 15.0;
@@ -71,10 +71,10 @@ fn is_free(rays: &RayCaster, wall: &Face) -> bool {
 }
 
 /// Half as many houses as are changed are new.
-fn change(chance: &mut Chance, share: f64) -> Change {
-    let drawn = chance.uniform();
+fn change(random: &mut Random, share: f64) -> Change {
+    let drawn = random.unit();
     let kinds = [(Change::Gone, 0.35), (Change::OtherHeight, 0.35), (Change::Rebuilt, 0.3)];
-    let kind = one_of(chance, &kinds);
+    let kind = one_of(random, &kinds);
     match drawn {
         d if d < share => kind,
         d if d < 1.5 * share => Change::New,
@@ -83,13 +83,13 @@ fn change(chance: &mut Chance, share: f64) -> Change {
 }
 
 fn as_modelled(house: &House, levels: &Levels, seed: u64, number: u64) -> House {
-    let mut chance = stream(seed, 2 * number + 1);
+    let mut random = stream(seed, 2 * number + 1);
     let drawn = if levels.lids { house.as_lid() } else { house.clone() };
     let foot = drawn.middle();
     let reach = drawn.faces.iter().flat_map(|f| &f.corners).map(|c| (c - foot).xy().norm()).fold(0.0, f64::max);
-    let shift = levels.building_m * chance.normal_vector().component_mul(&Vector3::new(1.0, 1.0, UP_SHARE));
-    let turn = levels.building_m / (2.0 * reach).max(LEAST_LEVER_M) * chance.normal();
-    let out_m: Vec<f64> = drawn.faces.iter().map(|_| levels.plane_m * chance.normal()).collect();
+    let shift = levels.building_m * random.normal_vector().component_mul(&Vector3::new(1.0, 1.0, UP_SHARE));
+    let turn = levels.building_m / (2.0 * reach).max(LEAST_LEVER_M) * random.normal();
+    let out_m: Vec<f64> = drawn.faces.iter().map(|_| levels.plane_m * random.normal()).collect();
     drawn.with_planes_moved(&out_m).shifted(shift, turn)
 }
 

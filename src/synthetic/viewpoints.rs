@@ -8,7 +8,7 @@ use super::draws::{between, one_of, whole};
 use super::house::{Face, Surface};
 use super::quarters::{Quarter, Quarters, SIDE_M, STEP_M};
 use crate::geometry::{Point3, RayCaster, Vector3};
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 
 /// Eye height, metres.
 const EYE_M: f64 = 1.7;
@@ -24,18 +24,18 @@ fn photo(number: usize, center: Point3<f64>, heading: f64, pitch: f64) -> Statio
 }
 
 /// Along a line, some 10 to 30 photographs to all sides, from `from` towards `heading`.
-pub(super) fn walk(from: Point3<f64>, heading: f64, rays: &RayCaster, chance: &mut Chance) -> Vec<Station> {
-    let photos = whole(chance, 10, 30);
-    let step = between(chance, 2.0, 4.5);
+pub(super) fn walk(from: Point3<f64>, heading: f64, rays: &RayCaster, random: &mut Random) -> Vec<Station> {
+    let photos = whole(random, 10, 30);
+    let step = between(random, 2.0, 4.5);
     let (mut at, mut heading) = (from, heading);
     let mut stations = Vec::new();
     for i in 0..photos {
-        let stray = 0.4 * Vector3::new(chance.normal(), chance.normal(), 0.0);
+        let stray = 0.4 * Vector3::new(random.normal(), random.normal(), 0.0);
         at += step * Vector3::new(heading.cos(), heading.sin(), 0.0);
-        heading += 0.01 * chance.normal();
-        let eye = at + stray + Vector3::new(0.0, 0.0, EYE_M + 0.15 * chance.normal());
-        let aside = one_of(chance, &SIDES) + 0.1 * chance.normal();
-        let pitch = between(chance, 0.02, 0.3);
+        heading += 0.01 * random.normal();
+        let eye = at + stray + Vector3::new(0.0, 0.0, EYE_M + 0.15 * random.normal());
+        let aside = one_of(random, &SIDES) + 0.1 * random.normal();
+        let pitch = between(random, 0.02, 0.3);
         if is_open(rays, &foot(&eye), 1.2) {
             stations.push(photo(i, eye, heading + aside, pitch));
         }
@@ -48,49 +48,49 @@ fn foot(eye: &Point3<f64>) -> Point3<f64> {
 }
 
 /// Along a street between blocks.
-pub(super) fn street(town: &Quarters, rays: &RayCaster, chance: &mut Chance) -> Vec<Station> {
-    let line = STEP_M * whole(chance, 1, town.columns) as f64 - 0.5 * (STEP_M - SIDE_M);
-    let along = between(chance, 0.0, STEP_M * (town.rows as f64 - 2.0)) + 10.0;
-    walk_on(line, along, rays, chance)
+pub(super) fn street(town: &Quarters, rays: &RayCaster, random: &mut Random) -> Vec<Station> {
+    let line = STEP_M * whole(random, 1, town.columns) as f64 - 0.5 * (STEP_M - SIDE_M);
+    let along = between(random, 0.0, STEP_M * (town.rows as f64 - 2.0)) + 10.0;
+    walk_on(line, along, rays, random)
 }
 
 /// Along the rim of the town: houses on one side only.
-pub(super) fn outskirts(town: &Quarters, rays: &RayCaster, chance: &mut Chance) -> Vec<Station> {
-    let along = between(chance, 0.0, STEP_M * (town.rows as f64 - 2.0)) + 10.0;
-    walk_on(-0.5 * (STEP_M - SIDE_M), along, rays, chance)
+pub(super) fn outskirts(town: &Quarters, rays: &RayCaster, random: &mut Random) -> Vec<Station> {
+    let along = between(random, 0.0, STEP_M * (town.rows as f64 - 2.0)) + 10.0;
+    walk_on(-0.5 * (STEP_M - SIDE_M), along, rays, random)
 }
 
 /// On a line that runs north or east, into either sense.
-fn walk_on(line: f64, along: f64, rays: &RayCaster, chance: &mut Chance) -> Vec<Station> {
-    let back = if chance.uniform() < 0.5 { PI } else { 0.0 };
+fn walk_on(line: f64, along: f64, rays: &RayCaster, random: &mut Random) -> Vec<Station> {
+    let back = if random.unit() < 0.5 { PI } else { 0.0 };
     // A walk that turns back begins where it would have ended, some 60 m further.
     let along = if back > 0.0 { along + STEP_M } else { along };
-    if chance.uniform() < 0.5 {
-        walk(Point3::new(line, along, 0.0), FRAC_PI_2 + back, rays, chance)
+    if random.unit() < 0.5 {
+        walk(Point3::new(line, along, 0.0), FRAC_PI_2 + back, rays, random)
     } else {
-        walk(Point3::new(along, line, 0.0), back, rays, chance)
+        walk(Point3::new(along, line, 0.0), back, rays, random)
     }
 }
 
 /// A block of a kind, not on the rim.
-fn inner_block(town: &Quarters, kinds: &[Quarter], chance: &mut Chance) -> usize {
+fn inner_block(town: &Quarters, kinds: &[Quarter], random: &mut Random) -> usize {
     let inner = |cell: &usize| {
         let (column, row) = (cell % town.columns, cell / town.columns);
         column > 0 && row > 0 && column + 1 < town.columns && row + 1 < town.rows && kinds.contains(&town.kind(*cell))
     };
     let cells: Vec<usize> = (0..town.columns * town.rows).filter(inner).collect();
-    cells[whole(chance, 0, cells.len())]
+    cells[whole(random, 0, cells.len())]
 }
 
 /// In a court, to all sides.
-pub(super) fn court(town: &Quarters, rays: &RayCaster, chance: &mut Chance) -> Vec<Station> {
-    let middle = town.middle_of(inner_block(town, &[Quarter::Court], chance));
-    let photos = whole(chance, 10, 26);
+pub(super) fn court(town: &Quarters, rays: &RayCaster, random: &mut Random) -> Vec<Station> {
+    let middle = town.middle_of(inner_block(town, &[Quarter::Court], random));
+    let photos = whole(random, 10, 26);
     let mut stations = Vec::new();
     for i in 0..photos {
-        let stray = 4.0 * Vector3::new(chance.normal(), chance.normal(), 0.0);
-        let eye = middle + stray + Vector3::new(0.0, 0.0, EYE_M + 0.15 * chance.normal());
-        let (heading, pitch) = (between(chance, 0.0, TAU), between(chance, 0.0, 0.4));
+        let stray = 4.0 * Vector3::new(random.normal(), random.normal(), 0.0);
+        let eye = middle + stray + Vector3::new(0.0, 0.0, EYE_M + 0.15 * random.normal());
+        let (heading, pitch) = (between(random, 0.0, TAU), between(random, 0.0, 0.4));
         if is_open(rays, &foot(&eye), 1.2) {
             stations.push(photo(i, eye, heading, pitch));
         }
@@ -99,11 +99,11 @@ pub(super) fn court(town: &Quarters, rays: &RayCaster, chance: &mut Chance) -> V
 }
 
 /// From the streets all round a block, or half round it.
-pub(super) fn round_block(town: &Quarters, rays: &RayCaster, chance: &mut Chance) -> Vec<Station> {
-    let middle = town.middle_of(inner_block(town, &[Quarter::Court, Quarter::Detached, Quarter::Rows], chance));
-    let half = 0.5 * STEP_M - between(chance, 0.0, 3.0);
+pub(super) fn round_block(town: &Quarters, rays: &RayCaster, random: &mut Random) -> Vec<Station> {
+    let middle = town.middle_of(inner_block(town, &[Quarter::Court, Quarter::Detached, Quarter::Rows], random));
+    let half = 0.5 * STEP_M - between(random, 0.0, 3.0);
     ring(
-        chance,
+        random,
         |angle| half / angle.cos().abs().max(angle.sin().abs()),
         (middle, 0.35),
         |c| (EYE_M + 0.1 * c.normal(), between(c, 0.05, 0.35)),
@@ -114,10 +114,10 @@ pub(super) fn round_block(town: &Quarters, rays: &RayCaster, chance: &mut Chance
 }
 
 /// One house, from the ground or by a drone that flies low.
-pub(super) fn single(place: Point3<f64>, half_m: f64, rays: &RayCaster, chance: &mut Chance) -> Vec<Station> {
-    let is_low = chance.uniform() < 0.5;
-    let beyond = half_m + between(chance, 6.0, 16.0);
-    let eye = |c: &mut Chance| {
+pub(super) fn single(place: Point3<f64>, half_m: f64, rays: &RayCaster, random: &mut Random) -> Vec<Station> {
+    let is_low = random.unit() < 0.5;
+    let beyond = half_m + between(random, 6.0, 16.0);
+    let eye = |c: &mut Random| {
         if is_low {
             (EYE_M + 0.1 * c.normal(), between(c, 0.05, 0.35))
         } else {
@@ -125,15 +125,15 @@ pub(super) fn single(place: Point3<f64>, half_m: f64, rays: &RayCaster, chance: 
             (height, -((height - 4.0).atan2(beyond * between(c, 0.8, 1.2))))
         }
     };
-    let stations = ring(chance, |_| beyond, (place, 0.12), eye);
+    let stations = ring(random, |_| beyond, (place, 0.12), eye);
     stations.into_iter().filter(|s| !is_low || is_open(rays, &foot(&s.center), 1.2)).collect()
 }
 
 /// By a drone, 28 to 55 m up.
-pub(super) fn drone(place: Point3<f64>, half_m: f64, chance: &mut Chance) -> Vec<Station> {
-    let radius = half_m + between(chance, 8.0, 30.0);
+pub(super) fn drone(place: Point3<f64>, half_m: f64, random: &mut Random) -> Vec<Station> {
+    let radius = half_m + between(random, 8.0, 30.0);
     ring(
-        chance,
+        random,
         |_| radius,
         (place, 0.12),
         |c| {
@@ -146,38 +146,38 @@ pub(super) fn drone(place: Point3<f64>, half_m: f64, chance: &mut Chance) -> Vec
 /// On a curve about a place (its distance by direction), more than half of it, looking inwards within so many radians; `eye`
 /// draws height and pitch.
 fn ring(
-    chance: &mut Chance,
+    random: &mut Random,
     distance: impl Fn(f64) -> f64,
     (place, astray): (Point3<f64>, f64),
-    eye: impl Fn(&mut Chance) -> (f64, f64),
+    eye: impl Fn(&mut Random) -> (f64, f64),
 ) -> Vec<Station> {
-    let photos = whole(chance, 14, 32);
-    let (from, arc) = (between(chance, 0.0, TAU), between(chance, PI, TAU));
+    let photos = whole(random, 14, 32);
+    let (from, arc) = (between(random, 0.0, TAU), between(random, PI, TAU));
     let station = |i: usize| {
         let angle = from + arc * i as f64 / photos as f64;
-        let (height, pitch) = eye(chance);
+        let (height, pitch) = eye(random);
         let level = place + distance(angle) * Vector3::new(angle.cos(), angle.sin(), 0.0);
         let center = Point3::new(level.x, level.y, height);
-        photo(i, center, angle + PI + astray * chance.normal(), pitch)
+        photo(i, center, angle + PI + astray * random.normal(), pitch)
     };
     (0..photos).map(station).collect()
 }
 
 /// A house of the town with gardens: its number and half its size.
-pub(super) fn detached_house(town: &Quarters, chance: &mut Chance) -> (Point3<f64>, f64) {
-    let middle = town.middle_of(inner_block(town, &[Quarter::Detached], chance));
+pub(super) fn detached_house(town: &Quarters, random: &mut Random) -> (Point3<f64>, f64) {
+    let middle = town.middle_of(inner_block(town, &[Quarter::Detached], random));
     let near = |h: &&super::House| (h.middle() - middle).xy().amax() < 0.5 * SIDE_M;
     let houses: Vec<_> = town.block.houses.iter().filter(near).collect();
-    let house = houses[whole(chance, 0, houses.len())];
+    let house = houses[whole(random, 0, houses.len())];
     let place = house.middle();
     let corners = house.faces.iter().flat_map(|face| &face.corners);
     (place, corners.map(|c| (c - place).xy().norm()).fold(0.0, f64::max))
 }
 
 /// Along one wall with room before it; the wall's number among the faces and the photographs of it.
-pub(super) fn before_a_wall(faces: &[Face], rays: &RayCaster, chance: &mut Chance) -> Option<(usize, Vec<Station>)> {
+pub(super) fn before_a_wall(faces: &[Face], rays: &RayCaster, random: &mut Random) -> Option<(usize, Vec<Station>)> {
     for _ in 0..200 {
-        let number = whole(chance, 0, faces.len());
+        let number = whole(random, 0, faces.len());
         let face = &faces[number];
         let normal = face.normal();
         let along = Vector3::z().cross(&normal);
@@ -187,15 +187,15 @@ pub(super) fn before_a_wall(faces: &[Face], rays: &RayCaster, chance: &mut Chanc
         if face.surface != Surface::Wall || width < 6.0 || !is_open(rays, &before, 2.0) {
             continue;
         }
-        let (photos, distance) = (whole(chance, 8, 16), between(chance, 6.0, 14.0));
+        let (photos, distance) = (whole(random, 8, 16), between(random, 6.0, 14.0));
         let mut stations = Vec::new();
         for i in 0..photos {
             let at = width * (i as f64 / (photos - 1) as f64 - 0.5);
-            let stray = 0.5 * Vector3::new(chance.normal(), chance.normal(), 0.0);
+            let stray = 0.5 * Vector3::new(random.normal(), random.normal(), 0.0);
             let level = middle + at * along + distance * normal + stray;
             let eye = Point3::new(level.x, level.y, EYE_M);
-            let heading = (-normal.y).atan2(-normal.x) + 0.25 * chance.normal();
-            let pitch = between(chance, 0.05, 0.3);
+            let heading = (-normal.y).atan2(-normal.x) + 0.25 * random.normal();
+            let pitch = between(random, 0.05, 0.3);
             if is_open(rays, &foot(&eye), 1.0) {
                 stations.push(photo(i, eye, heading, pitch));
             }

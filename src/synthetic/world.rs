@@ -86,8 +86,8 @@ impl World {
             let level = if *matter == Matter::Wall { levels.relief } else { 0.0 };
             (*matter, Relief::new(face, level, seed.wrapping_add(2), number))
         };
-        let mut chance = stream(seed, 3);
-        let wave = |_| (TAU / WAVE_M * chance.normal_vector(), TAU * chance.uniform());
+        let mut random = stream(seed, 3);
+        let wave = |_| (TAU / WAVE_M * random.normal_vector(), TAU * random.unit());
         World {
             faces: all.iter().enumerate().map(relief).collect(),
             normals: all.iter().map(|(_, face)| face.normal()).collect(),

@@ -6,7 +6,7 @@
 //!              Orthogonal to similarities, since the pose that is sought is the similarity that fits the bent cloud best
 
 use crate::geometry::{Point3, Vector3};
-use crate::robust::Chart;
+use crate::robust::MotionParameters;
 
 /// Similarities: three shifts, three turns, the scale.
 const SIMILARITIES: usize = 7;
@@ -25,12 +25,12 @@ pub(super) struct Bending {
 
 impl Bending {
     /// Of a cloud that stands at these places.
-    pub fn over(places: &[Point3<f64>], chart: &Chart) -> Bending {
+    pub fn over(places: &[Point3<f64>], parameters: &MotionParameters) -> Bending {
         const ALL: usize = SIMILARITIES + FIELDS;
         // Inner products of the raw fields over the cloud.
         let mut products = [[0.0; ALL]; ALL];
         for place in places {
-            let raw = raw_fields(place, chart);
+            let raw = raw_fields(place, parameters);
             for i in 0..ALL {
                 for j in 0..=i {
                     products[i][j] += raw[i].dot(&raw[j]) / places.len() as f64;
@@ -73,14 +73,14 @@ impl Bending {
     }
 
     /// The displacement of a place by each field.
-    pub fn at(&self, place: &Point3<f64>, chart: &Chart) -> Vec<Vector3<f64>> {
-        let raw = raw_fields(place, chart);
+    pub fn at(&self, place: &Point3<f64>, parameters: &MotionParameters) -> Vec<Vector3<f64>> {
+        let raw = raw_fields(place, parameters);
         self.mixes.iter().map(|mix| raw.iter().zip(mix).map(|(field, share)| field * *share).sum()).collect()
     }
 }
 
-fn raw_fields(place: &Point3<f64>, chart: &Chart) -> [Vector3<f64>; SIMILARITIES + FIELDS] {
-    let y = ((place - chart.center) / chart.radius).map(|v| v.clamp(-FARTHEST, FARTHEST));
+fn raw_fields(place: &Point3<f64>, parameters: &MotionParameters) -> [Vector3<f64>; SIMILARITIES + FIELDS] {
+    let y = ((place - parameters.center) / parameters.radius).map(|v| v.clamp(-FARTHEST, FARTHEST));
     let (a, b, c) = (y.x, y.y, y.z);
     let mut fields = [Vector3::zeros(); SIMILARITIES + FIELDS];
     let linear = [
@@ -110,19 +110,19 @@ mod tests {
     use super::*;
     use crate::robust::Random;
 
-    fn cloud() -> (Vec<Point3<f64>>, Chart) {
+    fn cloud() -> (Vec<Point3<f64>>, MotionParameters) {
         let mut random = Random::stream(3, 0);
         let mut draw = |reach: f64| reach * (2.0 * random.unit() - 1.0);
         let places = (0..300).map(|_| Point3::new(100.0 + draw(30.0), 50.0 + draw(20.0), draw(8.0))).collect();
-        (places, Chart::of_similarity(Point3::new(100.0, 50.0, 0.0), 30.0))
+        (places, MotionParameters::of_similarity(Point3::new(100.0, 50.0, 0.0), 30.0))
     }
 
     #[test]
     fn no_similarity_undoes_any_part_of_a_bend_and_each_moves_the_cloud_by_one() {
-        let (places, chart) = cloud();
-        let bending = Bending::over(&places, &chart);
+        let (places, parameters) = cloud();
+        let bending = Bending::over(&places, &parameters);
         assert_eq!(bending.count(), FIELDS);
-        let at: Vec<Vec<Vector3<f64>>> = places.iter().map(|p| bending.at(p, &chart)).collect();
+        let at: Vec<Vec<Vector3<f64>>> = places.iter().map(|p| bending.at(p, &parameters)).collect();
         let mean = |of: &dyn Fn(usize) -> f64| (0..places.len()).map(of).sum::<f64>() / places.len() as f64;
         for k in 0..bending.count() {
             for l in 0..=k {
@@ -130,7 +130,7 @@ mod tests {
                 assert!((product - f64::from(u8::from(k == l))).abs() < 1e-6, "{k} {l}: {product}");
             }
             for similarity in 0..SIMILARITIES {
-                let product = mean(&|i| at[i][k].dot(&raw_fields(&places[i], &chart)[similarity]));
+                let product = mean(&|i| at[i][k].dot(&raw_fields(&places[i], &parameters)[similarity]));
                 assert!(product.abs() < 1e-6, "{k}: {product}");
             }
         }
@@ -138,10 +138,10 @@ mod tests {
 
     #[test]
     fn a_cloud_in_one_line_bends_in_fewer_ways() {
-        let chart = Chart::of_similarity(Point3::origin(), 10.0);
+        let parameters = MotionParameters::of_similarity(Point3::origin(), 10.0);
         let line: Vec<Point3<f64>> = (-10..=10).map(|k| Point3::new(f64::from(k), 0.0, 0.0)).collect();
-        let bending = Bending::over(&line, &chart);
+        let bending = Bending::over(&line, &parameters);
         assert!(bending.count() > 0 && bending.count() < 10, "{}", bending.count());
-        assert_eq!(Bending::over(&[], &chart).count(), 0);
+        assert_eq!(Bending::over(&[], &parameters).count(), 0);
     }
 }

@@ -16,14 +16,14 @@ use super::observations::observations;
 use super::system::System;
 use crate::correspondence::PoseRefiner;
 use crate::geometry::Similarity;
-use crate::robust::{Chart, Matrix7};
+use crate::robust::{Matrix7, MotionParameters};
 
 /// The final pose with its information.
 #[derive(Clone, Debug)]
 pub struct Estimate {
     pub city_from_level: Similarity,
-    pub chart: Chart,
-    /// What the data hold of the pose, 1 / m^2 in the chart's unknowns.
+    pub parameters: MotionParameters,
+    /// What the data hold of the pose, 1 / m^2 in the motion's unknowns.
     pub information: Matrix7,
     /// The same without each of the building planes in turn.
     pub without: Vec<Matrix7>,
@@ -36,23 +36,23 @@ pub fn estimate(refiner: &PoseRefiner, pose: &Similarity) -> Estimate {
     let limits = &scene.limits.uncertainty;
     let mut pose = *pose;
     for _ in 0..limits.rounds {
-        let chart = refiner.assess(&[], &pose, 0.0).chart;
+        let parameters = refiner.assess(&[], &pose, 0.0).parameters;
         let observations = observations(refiner, &pose, limits.gate_units * scene.gate_unit_m);
-        let system = System::converged(refiner, &pose, &chart, &observations);
-        let moved = chart.moved(&pose, &chart.step(&system.held(), scene.limits.refinement.most_sigma_m));
+        let system = System::converged(refiner, &pose, &parameters, &observations);
+        let moved = parameters.moved(&pose, &parameters.step(&system.held(), scene.limits.refinement.most_sigma_m));
         if !moved.translation.iter().all(|v| v.is_finite()) || !scene.prior.reaches(&moved) {
             break;
         }
         pose = moved;
     }
-    let chart = refiner.assess(&[], &pose, 0.0).chart;
+    let parameters = refiner.assess(&[], &pose, 0.0).parameters;
     let observations = observations(refiner, &pose, limits.gate_units * scene.gate_unit_m);
-    let mut system = System::converged(refiner, &pose, &chart, &observations);
+    let mut system = System::converged(refiner, &pose, &parameters, &observations);
     system.widen_to_t_variance();
     let left_out = leave_out::by_building(&system);
     Estimate {
         city_from_level: pose,
-        chart,
+        parameters,
         information: left_out.widened(&system.held().full()),
         without: leave_out::by_building_plane(&system).iter().map(|m| left_out.widened(m)).collect(),
         findings: SystematicErrors::of(&system),

@@ -14,7 +14,7 @@ use super::observations::{KINDS, Observations};
 use crate::correspondence::PoseRefiner;
 use crate::geometry::{Point3, Similarity};
 use crate::limits::UncertaintyLimits;
-use crate::robust::{Chart, Matrix7, Motion, NormalEquations, Vector7};
+use crate::robust::{Matrix7, Motion, MotionParameters, NormalEquations, Vector7};
 
 /// Unknowns of the pose.
 pub(super) const POSE: usize = 7;
@@ -72,12 +72,12 @@ pub(super) struct BuildingSystem {
 impl<'a> System<'a> {
     fn new(
         sample: &'a Observations,
-        chart: &Chart,
+        parameters: &MotionParameters,
         places: &[Point3<f64>],
         start: &Matrix7,
         limits: &'a UncertaintyLimits,
     ) -> System<'a> {
-        let bending = Bending::over(places, chart);
+        let bending = Bending::over(places, parameters);
         let common = COMMON + bending.count();
         let mut known = DMatrix::zeros(common, common);
         known.view_mut((0, 0), (POSE, POSE)).copy_from(start);
@@ -86,13 +86,13 @@ impl<'a> System<'a> {
             building: [of_spread(limits.building_sigma_m); KINDS],
             building_plane: [of_spread(limits.building_plane_sigma_m); KINDS],
             cell: of_spread(limits.cell_sigma_m),
-            bending: of_spread(limits.bending_share * chart.radius),
+            bending: of_spread(limits.bending_share * parameters.radius),
         };
         System {
             sample,
             limits,
-            radius_m: chart.radius,
-            rows: rows(sample, chart, &bending, common),
+            radius_m: parameters.radius,
+            rows: rows(sample, parameters, &bending, common),
             common,
             start: known,
             variances: first,
@@ -109,14 +109,14 @@ impl<'a> System<'a> {
     pub fn converged(
         refiner: &PoseRefiner<'a>,
         pose: &Similarity,
-        chart: &Chart,
+        parameters: &MotionParameters,
         sample: &'a Observations,
     ) -> System<'a> {
         let scene = refiner.scene;
         let places: Vec<Point3<f64>> =
             scene.level_cloud.sample_points.iter().map(|sample_point| pose.apply(&sample_point.position)).collect();
         let mut system =
-            System::new(sample, chart, &places, &scene.prior.information(chart), &scene.limits.uncertainty);
+            System::new(sample, parameters, &places, &scene.prior.information(parameters), &scene.limits.uncertainty);
         for _ in 0..system.limits.steps {
             system.solve();
             system.update_variances();
@@ -338,19 +338,19 @@ fn weight(squared: f64, parts: usize, student_dof: f64) -> f64 {
     (student_dof + parts as f64) / (student_dof + squared)
 }
 
-fn rows(sample: &Observations, chart: &Chart, bending: &Bending, common: usize) -> DMatrix<f64> {
+fn rows(sample: &Observations, parameters: &MotionParameters, bending: &Bending, common: usize) -> DMatrix<f64> {
     let mut rows = DMatrix::zeros(common + 1 + OF_BUILDING + OF_BUILDING_PLANE, sample.cells.len());
     for building in &sample.buildings {
         for building_plane in &sample.building_planes[building.building_planes.clone()] {
             for k in building_plane.cells.clone() {
                 let (cell, mut row) = (&sample.cells[k], rows.column_mut(k));
-                row.rows_mut(0, POSE).copy_from(&chart.row(&cell.foot, &cell.normal));
-                if chart.motion == Motion::Rigid {
+                row.rows_mut(0, POSE).copy_from(&parameters.row(&cell.foot, &cell.normal));
+                if parameters.motion == Motion::Rigid {
                     row[POSE - 1] = 0.0;
                 }
                 row[WALLS] = f64::from(u8::from(building_plane.is_wall));
                 row[LIDS] = f64::from(u8::from(building_plane.is_top));
-                let bends = bending.at(&cell.foot, chart);
+                let bends = bending.at(&cell.foot, parameters);
                 bends.iter().enumerate().for_each(|(b, bend)| row[COMMON + b] = bend.dot(&cell.normal));
                 row[common] = cell.across_m;
                 let (n, arm) = (cell.normal, cell.foot - building.middle);

@@ -10,21 +10,21 @@
 use super::{Freedom, FreedomKind, FreedomUnit, words};
 use crate::geometry::Vector3;
 use crate::limits::VerdictLimits;
-use crate::robust::{Chart, Matrix7, Motion, Vector7};
+use crate::robust::{Matrix7, Motion, MotionParameters, Vector7};
 
 /// What holds a pose.
 #[derive(Clone, Debug)]
 pub struct PoseInformation {
-    pub chart: Chart,
-    /// Information of the data, 1 / m^2 in the chart's unknowns.
+    pub parameters: MotionParameters,
+    /// Information of the data, 1 / m^2 in the motion's unknowns.
     pub information: Matrix7,
     /// The same without each front of a building in turn.
     pub without: Vec<Matrix7>,
     /// Information of what is known beforehand.
     pub prior: Matrix7,
-    /// The scale, where one was given. The chart's motion is rigid where it is held.
+    /// The scale, where one was given. The motion's motion is rigid where it is held.
     pub given_scale: Option<GivenScale>,
-    /// What a freedom must be held to, metres at the chart's radius.
+    /// What a freedom must be held to, metres at the motion's radius.
     pub accuracy_m: f64,
     /// How many times `accuracy_m` a freedom may be off without any one front of a building.
     pub confirmed_times: f64,
@@ -69,13 +69,14 @@ impl GivenScale {
 impl PoseInformation {
     /// Whether the data tell a scale, and it is the given one.
     pub fn agrees_with_given_scale(&self, limits: &VerdictLimits) -> bool {
-        let agrees = |s: GivenScale| s.bits >= limits.margin_bits() && !s.is_contradicted(self.chart.radius, limits);
+        let agrees =
+            |s: GivenScale| s.bits >= limits.margin_bits() && !s.is_contradicted(self.parameters.radius, limits);
         self.given_scale.is_some_and(agrees)
     }
 
     /// The freedoms that are not given, the loosest first.
     pub fn directions(&self) -> Vec<DirectionEstimate> {
-        let spectrum = self.chart.spectrum(&self.information);
+        let spectrum = self.parameters.spectrum(&self.information);
         let all = self.with_prior(&self.information);
         let without: Vec<Posterior> = self.without.iter().map(|information| self.with_prior(information)).collect();
         let direction = |d: &crate::robust::Direction| {
@@ -98,7 +99,7 @@ impl PoseInformation {
     /// What is known with such information of the data and what is known beforehand.
     fn with_prior(&self, information: &Matrix7) -> Posterior {
         let information = information + self.prior;
-        let covariance = match self.chart.motion {
+        let covariance = match self.parameters.motion {
             Motion::Similarity => information.try_inverse(),
             Motion::Rigid => {
                 let of_pose = information.fixed_view::<6, 6>(0, 0).into_owned().try_inverse();
@@ -112,7 +113,7 @@ impl PoseInformation {
     /// A scale that is given has none.
     pub fn covariance(&self) -> [[f64; 7]; 7] {
         let covariance = self.with_prior(&self.information).covariance.unwrap_or_else(Matrix7::zeros);
-        let r = self.chart.radius;
+        let r = self.parameters.radius;
         let unit = Vector7::from_column_slice(&[1.0 / r, 1.0 / r, 1.0 / r, 1.0, 1.0, 1.0, 1.0 / r]);
         std::array::from_fn(|i| {
             std::array::from_fn(|j| unit[i] * (covariance[(i, j)] + covariance[(j, i)]) / 2.0 * unit[j])
@@ -120,7 +121,7 @@ impl PoseInformation {
     }
 }
 
-/// Information and its inverse, in the chart's unknowns, 1 / m^2 and m^2; a scale that is given has no variance.
+/// Information and its inverse, in the motion's unknowns, 1 / m^2 and m^2; a scale that is given has no variance.
 struct Posterior {
     information: Matrix7,
     covariance: Option<Matrix7>,
@@ -140,7 +141,7 @@ fn along(matrix: &Matrix7, unit: &Vector7) -> f64 {
 
 /// The freedoms in words, the loosest first; a given scale that is held stands at the end.
 pub fn freedoms(hold: &PoseInformation, limits: &VerdictLimits) -> Vec<Freedom> {
-    let r = hold.chart.radius;
+    let r = hold.parameters.radius;
     let in_words = |d: DirectionEstimate| {
         let part = |first: usize| Vector3::new(d.unit[first], d.unit[first + 1], d.unit[first + 2]);
         let (turn, shift, scale) = (part(0), part(3), d.unit[6]);
@@ -158,7 +159,7 @@ pub fn freedoms(hold: &PoseInformation, limits: &VerdictLimits) -> Vec<Freedom> 
             Freedom { kind, name, direction, sigma: (d.sigma_m / r).to_degrees(), unit, determined, given: false }
         }
     };
-    let held = hold.given_scale.filter(|_| hold.chart.motion == Motion::Rigid);
+    let held = hold.given_scale.filter(|_| hold.parameters.motion == Motion::Rigid);
     let given =
         held.map(|scale| Freedom { determined: !scale.is_contradicted(r, limits), given: true, ..scale_freedom(0.0) });
     hold.directions().into_iter().map(in_words).chain(given).collect()

@@ -97,8 +97,9 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Decision {
     let alternatives = alternatives(best, &others, hold);
     let certainty = certainty(evidence, &others, limits);
     let serious: Vec<&Rival> = others.iter().copied().filter(|r| is_serious(r, best, limits)).collect();
-    let is_denied =
-        |scale: &GivenScale| scale.is_contradicted(hold.chart.radius, limits) && scale.bits >= certainty.needed_bits;
+    let is_denied = |scale: &GivenScale| {
+        scale.is_contradicted(hold.parameters.radius, limits) && scale.bits >= certainty.needed_bits
+    };
     let denied = hold.given_scale.filter(is_denied);
     let (verdict, reason) = if let Some(scale) = denied {
         (Verdict::Undetermined, contradicted_reason(&scale))
@@ -134,7 +135,7 @@ fn differs(
     directions: &[DirectionEstimate],
     limits: &VerdictLimits,
 ) -> bool {
-    let mut motion = hold.chart.between(&a.city_from_sfm, &b.city_from_sfm);
+    let mut motion = hold.parameters.between(&a.city_from_sfm, &b.city_from_sfm);
     for d in directions.iter().filter(|d| !d.determined) {
         motion -= d.unit * d.unit.dot(&motion);
     }
@@ -172,7 +173,7 @@ fn alternatives(best: &Rival, others: &[&Rival], hold: &PoseInformation) -> Vec<
         .map(|r| Alternative {
             city_from_sfm: r.city_from_sfm,
             weight: (-lag(r)).exp2() / total,
-            differs: words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.chart.center),
+            differs: words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.parameters.center),
         })
         .collect()
 }
@@ -199,7 +200,7 @@ fn failed_reason(certainty: &Certainty, evidence: &Evidence) -> String {
 fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &PoseInformation) -> String {
     let heaviest = serious.iter().max_by(|a, b| a.posterior_bits().total_cmp(&b.posterior_bits()));
     let how = heaviest.map_or(String::new(), |r| {
-        let differs = words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.chart.center);
+        let differs = words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.parameters.center);
         format!(
             " (the likeliest: {differs}; the evidence for the best leads it by {:.1} bits)",
             best.posterior_bits() - r.posterior_bits()
@@ -215,7 +216,7 @@ fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &PoseInformation) ->
 fn beyond_reason(best: &Rival, beyond: &Rival, hold: &PoseInformation) -> String {
     format!(
         "beyond three sigmas of the start a pose explains more: {}, evidence of {:.1} bits against {:.1}; check the start, or give it larger sigmas",
-        words::difference(&best.city_from_sfm, &beyond.city_from_sfm, &hold.chart.center),
+        words::difference(&best.city_from_sfm, &beyond.city_from_sfm, &hold.parameters.center),
         beyond.bits,
         best.bits
     )

@@ -5,7 +5,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use cityweld::solvers::scene::Chance;
+use cityweld::solvers::scene::Random;
 use cityweld::synthetic::{Block, CaptureOptions, Ring};
 use cityweld::types::{ImageIndex, PointIndex};
 use cityweld::{
@@ -31,8 +31,8 @@ pub fn write_part(room: &Path, name: &str, part: &Reconstruction) -> PathBuf {
 
 /// As a run of its own would have left a piece: every point off by `sigma` along each axis, in the piece's units.
 pub fn blurred(mut piece: Reconstruction, sigma: f64, seed: u64) -> Reconstruction {
-    let mut chance = Chance::new(seed);
-    piece.points.iter_mut().for_each(|x| *x += sigma * chance.normal_vector());
+    let mut random = Random::stream(seed, 0);
+    piece.points.iter_mut().for_each(|x| *x += sigma * random.normal_vector());
     piece
 }
 

@@ -9,8 +9,8 @@ use crate::synthetic::{Block, CloudOptions, House, Offset, Plinth, Surface};
 fn slid(refiner: &PoseRefiner, pose: &Similarity) -> Similarity {
     let (scene, gate_m) = (refiner.scene, refiner.scene.gate_unit_m);
     let held = refiner.assess(&patch_points(scene), pose, gate_m);
-    let spectrum = held.chart.spectrum(&held.equations.full());
-    walk_weak_directions(scene, &scene.level_cloud.point_subset(1500), &held.chart, &spectrum, pose, gate_m)
+    let spectrum = held.parameters.spectrum(&held.equations.full());
+    search_weak_directions(scene, &scene.level_cloud.point_subset(1500), &held.parameters, &spectrum, pose, gate_m)
 }
 
 fn raised(made: &Made, scene: &Scene, rise_m: f64) -> Similarity {
@@ -39,7 +39,7 @@ fn a_loose_height_over_ground_is_found_by_the_ground() {
     // Beyond the gate, where the ground holds nothing.
     let found = slid(&PoseRefiner::new(&scene), &raised(&made, &scene, 1.0));
     let left_m = made.rise_m(&scene, &found);
-    let step_m = made.limits.walk.step_of_gate * scene.gate_unit_m;
+    let step_m = made.limits.line_search.step_of_gate * scene.gate_unit_m;
     assert!(left_m.abs() < step_m, "{left_m}");
 }
 
@@ -66,7 +66,7 @@ fn a_cloud_whose_plinth_lies_on_the_wall_hops_to_its_own_place() {
     let point_subset = scene.level_cloud.point_subset(1500);
     let shifted = made.pose(&scene, &Offset { shift_m: [0.0, 0.5, 0.0], ..Offset::default() });
     let stuck = refiner
-        .refine(&point_subset, &shifted, &scene.limits.walk.basin_gates_units.map(|g| g * scene.gate_unit_m))
+        .refine(&point_subset, &shifted, &scene.limits.line_search.basin_gates_units.map(|g| g * scene.gate_unit_m))
         .city_from_level;
     let off = |pose: &Similarity| made.error(&scene, pose).level_m;
     assert!(off(&stuck) > 0.4, "{}", off(&stuck));
@@ -78,25 +78,25 @@ fn a_cloud_whose_plinth_lies_on_the_wall_hops_to_its_own_place() {
 }
 
 #[test]
-fn a_walk_goes_to_the_best_place_and_to_the_nearest_of_equals() {
+fn a_line_search_goes_to_the_best_place_and_to_the_nearest_of_equals() {
     let made = Made::walls();
     let scene = made.scene(&Offset::default(), Motion::Rigid);
     let pose = scene.prior.expected();
-    let chart = PoseRefiner::new(&scene).assess(&[], &pose, 0.0).chart;
+    let parameters = PoseRefiner::new(&scene).assess(&[], &pose, 0.0).parameters;
     let up = Direction { unit: Vector7::from_fn(|i, _| if i == 5 { 1.0 } else { 0.0 }), sigma_m: 1.0 };
     let stride = || Stride { direction: up, offsets_m: Stride::even(0.5, 6) };
     let rise_m = |pose: &Similarity| pose.translation.z - scene.prior.center_in_city.z;
-    let walked = |value: fn(f64) -> f64| {
+    let moved = |value: fn(f64) -> f64| {
         let valued = |pose: &Similarity| (value(rise_m(pose)), *pose);
-        rise_m(&walk(&scene.prior, &chart, valued(&pose), &[stride()], valued).1)
+        rise_m(&line_search(&scene.prior, &parameters, valued(&pose), &[stride()], valued).1)
     };
-    assert!((walked(|z| -(z - 1.6).abs()) - 1.5).abs() < 1e-12);
-    assert!((walked(|z| z.abs().min(1.2)).abs() - 1.5).abs() < 1e-12);
-    assert_eq!(walked(|_| 0.0), 0.0);
+    assert!((moved(|z| -(z - 1.6).abs()) - 1.5).abs() < 1e-12);
+    assert!((moved(|z| z.abs().min(1.2)).abs() - 1.5).abs() < 1e-12);
+    assert_eq!(moved(|_| 0.0), 0.0);
 }
 
 #[test]
-fn no_walk_leaves_the_reach_of_what_is_known_beforehand() {
+fn no_line_search_leaves_the_reach_of_what_is_known_beforehand() {
     let made = Made::walls();
     let up = made.survey.city_from_sfm.rotation.inverse() * Vector3::z();
     let upright = Upright { up, sigma_rad: 0.0, known: true };
@@ -112,14 +112,14 @@ fn no_walk_leaves_the_reach_of_what_is_known_beforehand() {
         let along = |k: usize| Direction { unit: Vector7::from_fn(|i, _| f64::from(u8::from(i == k))), sigma_m: 1.0 };
         let strides: Vec<Stride> =
             (3..6).map(|k| Stride { direction: along(k), offsets_m: Stride::even(0.4, 20) }).collect();
-        let farthest = walk(&scene.prior, &held.chart, valued(&pose), &strides, valued);
+        let farthest = line_search(&scene.prior, &held.parameters, valued(&pose), &strides, valued);
         assert!((farthest.0 - 1.2).abs() < 1e-9, "{}", farthest.0);
         for (name, found) in [
             ("slide", slid(&refiner, &pose)),
             ("hop", basin_hopping(&refiner, &scene.level_cloud.point_subset(1000), &pose)),
             (
                 "settle",
-                walk_free_directions(&refiner, &all(&scene), held.clone(), scene.gate_unit_m, 4.0).city_from_level,
+                search_free_directions(&refiner, &all(&scene), held.clone(), scene.gate_unit_m, 4.0).city_from_level,
             ),
         ] {
             assert!(scene.prior.reaches(&found), "{name}: {found:?} from {pose:?}");

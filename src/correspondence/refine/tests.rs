@@ -1,5 +1,5 @@
 use super::*;
-use crate::correspondence::line_search::{planes_with_points, walk_free_directions};
+use crate::correspondence::line_search::{planes_with_points, search_free_directions};
 use crate::correspondence::test_scene::{Made, all, patch_points, walls_alone, with_points};
 use crate::geometry::Vector3;
 use crate::synthetic::{Block, CloudOptions, House, Offset};
@@ -44,7 +44,7 @@ fn a_given_scale_is_kept_to_the_bit_where_poses_are_refined_sharpened_and_settle
         let refiner = PoseRefiner::new(&scene);
         let first = refined(&refiner, &scene.prior.expected());
         let sharp = refiner.sharpen(&patch_points(&scene), &first.city_from_level, scene.gate_unit_m);
-        let refined_to_end = walk_free_directions(&refiner, &all(&scene), sharp.clone(), scene.gate_unit_m, 1.0);
+        let refined_to_end = search_free_directions(&refiner, &all(&scene), sharp.clone(), scene.gate_unit_m, 1.0);
         for pose in [&first, &sharp, &refined_to_end].map(|refined| refined.city_from_level) {
             assert_eq!(pose.scale.to_bits(), 1f64.to_bits(), "{pose:?}");
             let given = scene.level_cloud.level_from_sfm.scale;
@@ -68,7 +68,7 @@ fn a_height_that_no_plane_holds_stays_where_it_was() {
         // A tilt and a scale that are good to some 1e-4 move the middle, up to 20 m from the cloud's, by millimetres.
         let rise_m = made.rise_m(&scene, &refined.city_from_level);
         assert!((rise_m - 0.35).abs() < 0.01, "{motion:?}: {rise_m}");
-        let loosest = refined.chart.spectrum(&refined.equations.full()).directions()[0];
+        let loosest = refined.parameters.spectrum(&refined.equations.full()).directions()[0];
         assert!(loosest.unit[5].abs() > 0.99 && loosest.sigma_m > 1.0, "{loosest:?}");
     }
 }
@@ -105,8 +105,8 @@ fn noise_across_the_walls_does_not_make_the_scale_smaller() {
     let scene = made.scene(&Offset::default(), Motion::Similarity);
     let refiner = PoseRefiner::new(&scene);
     let rows = refiner.point_plane_matches(&patch_points(&scene), &made.truth(&scene), scene.gate_unit_m);
-    let chart = refiner.assess(&[], &made.truth(&scene), 0.0).chart;
-    let equations = refiner.equations(&chart, &rows);
+    let parameters = refiner.assess(&[], &made.truth(&scene), 0.0).parameters;
+    let equations = refiner.equations(&parameters, &rows);
     let gradient: f64 = equations.gradient[6];
     let expected: f64 = rows
         .chunk_by(|a, b| a.hit.plane == b.hit.plane)
@@ -114,7 +114,7 @@ fn noise_across_the_walls_does_not_make_the_scale_smaller() {
             let count: f64 = plane.iter().map(|row| row.weight).sum();
             let variance = refiner.point_sigma_m.powi(2) + count * scene.limits.plane_sigma_m.powi(2);
             let arm = |row: &PointPlaneMatch| {
-                (row.hit.normal.dot(&(row.place - chart.center)) - row.hit.across_m) / chart.radius
+                (row.hit.normal.dot(&(row.place - parameters.center)) - row.hit.across_m) / parameters.radius
             };
             plane.iter().map(|row| row.weight * arm(row) * row.hit.across_m).sum::<f64>() / variance
         })
@@ -152,7 +152,7 @@ fn settling_finds_the_height_by_a_handful_of_points_on_grazed_roofs() {
             let sharp = refiner.sharpen(&patch_points(&scene), &off, scene.gate_unit_m);
             let left_m = made.rise_m(&scene, &sharp.city_from_level);
             assert!((left_m - rise_m).abs() < 0.02, "walls hold no height: {left_m}");
-            let refined_to_end = walk_free_directions(&refiner, &all(&scene), sharp, scene.gate_unit_m, 1.2);
+            let refined_to_end = search_free_directions(&refiner, &all(&scene), sharp, scene.gate_unit_m, 1.2);
             let error = made.error(&scene, &refined_to_end.city_from_level);
             assert!(error.up_m < 0.02 && error.level_m < 0.02, "{error:?} from {rise_m}");
         }
@@ -175,7 +175,7 @@ fn stray_points_beside_a_wall_hold_no_roof_that_is_not_there() {
     let on_roof = made.pose(&scene, &Offset { shift_m: [0.0, 0.0, 0.1], ..Offset::default() });
     let support = |pose: &Similarity| planes_with_points(&refiner, &all(&scene), pose, scene.gate_unit_m);
     assert!(support(&on_roof) > support(&sharp.city_from_level), "they tempt");
-    let refined_to_end = walk_free_directions(&refiner, &all(&scene), sharp, scene.gate_unit_m, 1.2);
+    let refined_to_end = search_free_directions(&refiner, &all(&scene), sharp, scene.gate_unit_m, 1.2);
     let rise_m = made.rise_m(&scene, &refined_to_end.city_from_level);
     // Far from the 10 cm that tempt.
     assert!(rise_m.abs() < 0.05, "{rise_m}");
@@ -210,7 +210,7 @@ fn a_wall_that_leans_by_a_degree_holds_no_height() {
     let rise_m = made.rise_m(&scene, &refined.city_from_level);
     // Least squares would lower the cloud by metres to make up for the centimetres.
     assert!(rise_m.abs() < 0.05, "{rise_m}");
-    let loosest = refined.chart.spectrum(&refined.equations.full()).directions()[0];
+    let loosest = refined.parameters.spectrum(&refined.equations.full()).directions()[0];
     assert!(loosest.sigma_m.is_finite() && loosest.sigma_m > made.limits.refinement.most_sigma_m, "{loosest:?}");
 }
 

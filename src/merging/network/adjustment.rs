@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use super::graph::{EdgeId, Network, derivative};
 use crate::geometry::Similarity;
 use crate::merging::extent::Extent;
-use crate::robust::{Chart, Matrix7, Vector7};
+use crate::robust::{Matrix7, MotionParameters, Vector7};
 
 const ROUNDS: usize = 20;
 const CONVERGED: f64 = 1e-10;
@@ -17,7 +17,7 @@ const CONVERGED: f64 = 1e-10;
 #[derive(Clone, Debug)]
 pub(super) struct Held {
     /// Merged frame.
-    pub chart: Chart,
+    pub parameters: MotionParameters,
     /// What is left of the information when all other parts are free.
     pub information: Matrix7,
 }
@@ -27,7 +27,7 @@ struct Adjustment<'a> {
     edges: Vec<EdgeId>,
     /// Parts that move.
     free: Vec<usize>,
-    charts: Vec<Chart>,
+    parameters: Vec<MotionParameters>,
 }
 
 /// Moves `poses` to the least squares of all edges in use; the hold on each part that has a place and is not the frame itself.
@@ -36,12 +36,12 @@ pub(super) fn adjust(network: &Network<'_>, poses: &mut [Option<Similarity>]) ->
     let has_anchor = edges.iter().any(|edge| matches!(edge, EdgeId::Anchor(_)));
     let frame = poses.iter().position(Option::is_some).filter(|_| !has_anchor);
     let free = (0..poses.len()).filter(|&p| poses[p].is_some() && Some(p) != frame).collect();
-    let chart = |p: usize| {
+    let parameters = |p: usize| {
         let Extent { center, radius } = network.parts[p].extent;
         let pose = poses[p].unwrap_or_else(Similarity::identity);
-        Chart::of_similarity(pose.apply(&center), pose.scale * radius)
+        MotionParameters::of_similarity(pose.apply(&center), pose.scale * radius)
     };
-    let adjustment = Adjustment { network, edges, free, charts: (0..poses.len()).map(chart).collect() };
+    let adjustment = Adjustment { network, edges, free, parameters: (0..poses.len()).map(parameters).collect() };
     adjustment.settle(poses);
     adjustment.held(poses)
 }
@@ -57,8 +57,8 @@ impl Adjustment<'_> {
             let mut largest: f64 = 0.0;
             for (k, &p) in self.free.iter().enumerate() {
                 let own = Vector7::from_iterator(step.rows(7 * k, 7).iter().copied());
-                largest = largest.max(own.norm() / self.charts[p].radius);
-                poses[p] = poses[p].map(|pose| self.charts[p].moved(&pose, &own));
+                largest = largest.max(own.norm() / self.parameters[p].radius);
+                poses[p] = poses[p].map(|pose| self.parameters[p].moved(&pose, &own));
             }
             if largest < CONVERGED {
                 return;
@@ -76,8 +76,8 @@ impl Adjustment<'_> {
             };
             let mut jacobian = DMatrix::zeros(7, size);
             for (k, &p) in self.free.iter().enumerate().filter(|(_, p)| self.network.touches(*edge, **p)) {
-                let of_part = derivative(self.charts[p].radius, &miss, |nudge| {
-                    nudged[p] = poses[p].map(|pose| self.charts[p].moved(&pose, nudge));
+                let of_part = derivative(self.parameters[p].radius, &miss, |nudge| {
+                    nudged[p] = poses[p].map(|pose| self.parameters[p].moved(&pose, nudge));
                     self.network.miss(&nudged, *edge)
                 });
                 nudged[p] = poses[p];
@@ -98,7 +98,7 @@ impl Adjustment<'_> {
         let Some(covariance) = self.equations(poses).0.cholesky().map(|c| c.inverse()) else { return held };
         for (k, &p) in self.free.iter().enumerate() {
             let own: Matrix7 = covariance.fixed_view::<7, 7>(7 * k, 7 * k).into_owned();
-            held[p] = own.try_inverse().map(|information| Held { chart: self.charts[p], information });
+            held[p] = own.try_inverse().map(|information| Held { parameters: self.parameters[p], information });
         }
         held
     }

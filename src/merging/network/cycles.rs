@@ -9,7 +9,8 @@
 use super::graph::{EdgeId, Network, Placement, derivative};
 use crate::geometry::Similarity;
 use crate::merging::extent::Extent;
-use crate::robust::{Chart, Matrix7, Vector7};
+use crate::merging::fault::EdgeFault;
+use crate::robust::{Matrix7, MotionParameters, Vector7};
 
 /// An edge that may be the wrong one, and where the others put the parts.
 struct Suspect {
@@ -21,14 +22,14 @@ struct Suspect {
 
 /// How far an edge is from what the places say.
 struct Miss {
-    /// In its chart's unknowns, as a share of the radius.
+    /// In its motion's unknowns, as a share of the radius.
     share: f64,
     sigmas: f64,
 }
 
 impl Network<'_> {
     fn covariance(&self, edge: EdgeId) -> Option<Matrix7> {
-        let floor = (self.limits.network.edge_floor * self.chart(edge)?.radius).powi(2);
+        let floor = (self.limits.network.edge_floor * self.parameters(edge)?.radius).powi(2);
         Some(self.information(edge)?.try_inverse()? + Matrix7::identity() * floor)
     }
 
@@ -41,7 +42,7 @@ impl Network<'_> {
             open += carried * self.covariance(other)? * carried.transpose();
         }
         let sigmas = miss.dot(&(open.try_inverse()? * miss)).max(0.0).sqrt();
-        Some(Miss { share: miss.norm() / self.chart(edge)?.radius, sigmas })
+        Some(Miss { share: miss.norm() / self.parameters(edge)?.radius, sigmas })
     }
 
     /// The other edges of the cycle that an edge closes; none where it is in the tree itself.
@@ -60,7 +61,7 @@ impl Network<'_> {
     /// How an edge's miss changes with the unknowns of another edge of its cycle. Which side of the cycle that one is on changes
     /// only the sign.
     fn carried(&self, placement: &Placement, edge: EdgeId, other: EdgeId, miss: &Vector7) -> Option<Matrix7> {
-        let chart = self.chart(other)?;
+        let parameters = self.parameters(other)?;
         let common = match other {
             EdgeId::Pair(index) => placement.poses[self.pairs[index].edge.a]?,
             EdgeId::Anchor(_) => Similarity::identity(),
@@ -70,8 +71,8 @@ impl Network<'_> {
             EdgeId::Anchor(p) => p,
         };
         let mut poses = placement.poses.clone();
-        derivative(chart.radius, miss, |nudge| {
-            let motion = common * chart.moved(&Similarity::identity(), nudge) * common.inverse();
+        derivative(parameters.radius, miss, |nudge| {
+            let motion = common * parameters.moved(&Similarity::identity(), nudge) * common.inverse();
             poses[end] = Some(motion * placement.poses[end]?);
             self.miss(&poses, edge)
         })
@@ -137,25 +138,19 @@ impl Network<'_> {
             EdgeId::Anchor(p) => format!("{} and the city", name(p)),
         };
         let miss = self.missed(without, edge).unwrap_or(Miss { share: f64::INFINITY, sigmas: f64::INFINITY });
-        let off = format!("{:.1} % of the extent ({:.0} sigmas)", 50.0 * miss.share, miss.sigmas);
-        let reason = match choices {
-            1 => format!("puts {names} {off} off from where the other edges put them"),
-            n => format!(
-                "a cycle does not close: the edges round {names} disagree by {off}, and any of {n} may be the wrong one; a \
-                 further shared photograph would tell"
-            ),
+        let Miss { share, sigmas } = miss;
+        let fault = match choices {
+            1 => EdgeFault::Contradicted { names, share, sigmas },
+            _ => EdgeFault::OpenCycle { names, share, sigmas, choices },
         };
         if choices > 1 {
-            self.ambiguity.get_or_insert_with(|| reason.clone());
+            self.ambiguity.get_or_insert_with(|| fault.clone());
         }
         match edge {
-            EdgeId::Pair(index) => {
-                self.pairs[index].edge.used = false;
-                self.pairs[index].edge.reason = Some(reason);
-            }
+            EdgeId::Pair(index) => self.pairs[index].edge.refusal = Some(fault),
             EdgeId::Anchor(p) => {
                 self.anchored[p] = false;
-                self.anchor_faults[p] = Some(reason);
+                self.anchor_faults[p] = Some(fault);
             }
         }
     }
@@ -163,7 +158,8 @@ impl Network<'_> {
     fn differs(&self, part: usize, one: Option<Similarity>, other: Option<Similarity>) -> bool {
         let (Some(one), Some(other)) = (one, other) else { return one.is_some() != other.is_some() };
         let Extent { center, radius } = self.parts[part].extent;
-        let moved = Chart::of_similarity(center, radius).between(&Similarity::identity(), &(one.inverse() * other));
+        let moved =
+            MotionParameters::of_similarity(center, radius).between(&Similarity::identity(), &(one.inverse() * other));
         moved.norm() > self.limits.same_place() * radius
     }
 }

@@ -2,6 +2,7 @@
 
 use super::graph::Network;
 use crate::geometry::Similarity;
+use crate::merging::fault::EdgeFault;
 use crate::merging::outcome::{Edge, EdgeSource};
 
 /// Edges for the report, lengths in the merged frame, and one for every two parts that only the city joins.
@@ -29,11 +30,8 @@ pub(super) fn edges(poses: &[Option<Similarity>], network: Network<'_>) -> Vec<E
             pairs: 0,
             inliers: 0,
             rms: 0.0,
-            used: pair.iter().all(|&p| in_use[p]),
-            reason: match pair.iter().all(|&p| in_use[p]) {
-                true => None,
-                false => Some(fault.unwrap_or_else(|| "the city does not fix both parts".to_owned())),
-            },
+            refusal: (!pair.iter().all(|&p| in_use[p])).then(|| fault.unwrap_or(EdgeFault::NotFixedByCity)),
+            note: None,
         });
     }
     edges.iter_mut().for_each(|e| (e.a, e.b) = (e.a.min(e.b), e.a.max(e.b)));

@@ -12,13 +12,13 @@ use crate::verdict::{Freedom, FreedomKind, FreedomUnit, PoseInformation};
 /// In the city's frame: metres and directions by their names.
 pub(super) fn in_the_city(held: &Held, limits: &VerdictLimits) -> Vec<Freedom> {
     let hold = PoseInformation {
-        chart: held.chart,
+        parameters: held.parameters,
         information: held.information,
         // Edges have been confirmed by those who made them.
         without: Vec::new(),
         prior: Matrix7::zeros(),
         given_scale: None,
-        accuracy_m: limits.accuracy_m(held.chart.radius),
+        accuracy_m: limits.accuracy_m(held.parameters.radius),
         confirmed_times: 1.0,
     };
     crate::verdict::freedoms(&hold, limits)
@@ -27,7 +27,7 @@ pub(super) fn in_the_city(held: &Held, limits: &VerdictLimits) -> Vec<Freedom> {
 /// In the frame of a part, which knows neither metres nor up; the loosest first. Sigmas hold what parts bend by, which no edges tell;
 /// whether a freedom is determined is for the edges to say.
 pub(super) fn in_a_parts_frame(held: &Held, limits: &MergeLimits) -> Vec<Freedom> {
-    let radius = held.chart.radius;
+    let radius = held.parameters.radius;
     let eigen = SymmetricEigen::new(held.information);
     let mut order: Vec<usize> = (0..7).collect();
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
@@ -46,7 +46,7 @@ pub(super) fn in_a_parts_frame(held: &Held, limits: &MergeLimits) -> Vec<Freedom
         } else {
             (FreedomKind::Turn, "turn", positive(&turn), (sigma(k) / radius).to_degrees(), FreedomUnit::Degree)
         };
-        let determined = own(k) <= limits.judge.determined * radius;
+        let determined = own(k) <= limits.decision.determined * radius;
         Freedom { kind, name: name.to_owned(), direction, sigma: sigma_in_unit, unit, determined, given: false }
     };
     order.into_iter().map(in_words).collect()

@@ -3,11 +3,12 @@
 //! Method       the greatest spanning tree by inliers, grown from the anchors or else from one part
 
 use crate::geometry::Similarity;
+use crate::merging::fault::EdgeFault;
 use crate::merging::limits::MergeLimits;
 use crate::merging::pairwise::Pair;
 use crate::merging::part::Anchor;
 use crate::merging::prepared::PreparedPart;
-use crate::robust::{Chart, Matrix7, Vector7};
+use crate::robust::{Matrix7, MotionParameters, Vector7};
 
 /// Step of numerical derivatives, share of the radius.
 const DIFFERENCE: f64 = 1e-6;
@@ -30,9 +31,9 @@ pub(super) struct Network<'a> {
     /// Which parts' anchors are in use.
     pub anchored: Vec<bool>,
     /// Why an anchor that is determined is not used.
-    pub anchor_faults: Vec<Option<String>>,
+    pub anchor_faults: Vec<Option<EdgeFault>>,
     /// Where a cycle does not close and nothing says which of its edges is wrong.
-    pub ambiguity: Option<String>,
+    pub ambiguity: Option<EdgeFault>,
     pub limits: &'a MergeLimits,
 }
 
@@ -57,7 +58,7 @@ impl<'a> Network<'a> {
 
     /// The edges in use, but for one.
     pub fn edges(&self, without: Option<EdgeId>) -> impl Iterator<Item = EdgeId> {
-        let pairs = (0..self.pairs.len()).filter(|&i| self.pairs[i].edge.used).map(EdgeId::Pair);
+        let pairs = (0..self.pairs.len()).filter(|&i| self.pairs[i].edge.is_used()).map(EdgeId::Pair);
         let anchors = (0..self.parts.len()).filter(|&p| self.anchored[p]).map(EdgeId::Anchor);
         pairs.chain(anchors).filter(move |edge| Some(*edge) != without)
     }
@@ -138,24 +139,24 @@ impl<'a> Network<'a> {
         self.parts[part].part.anchor.as_ref().map(|a| a.common_from_part)
     }
 
-    /// The seven unknowns by which the poses miss an edge, in its chart: of a pair in the frame of its first part, of an anchor in the
+    /// The seven unknowns by which the poses miss an edge, in its motion parameters: of a pair in the frame of its first part, of an anchor in the
     /// city's.
     pub fn miss(&self, poses: &[Option<Similarity>], edge: EdgeId) -> Option<Vector7> {
-        let chart = self.chart(edge)?;
+        let parameters = self.parameters(edge)?;
         match edge {
             EdgeId::Pair(index) => {
                 let Pair { edge, fit, .. } = &self.pairs[index];
                 let a_from_b = poses[edge.a]?.inverse() * poses[edge.b]?;
-                Some(chart.between(&fit.as_ref()?.a_from_b, &a_from_b))
+                Some(parameters.between(&fit.as_ref()?.a_from_b, &a_from_b))
             }
-            EdgeId::Anchor(p) => Some(chart.between(&self.anchor_pose(p)?, &poses[p]?)),
+            EdgeId::Anchor(p) => Some(parameters.between(&self.anchor_pose(p)?, &poses[p]?)),
         }
     }
 
-    pub fn chart(&self, edge: EdgeId) -> Option<Chart> {
+    pub fn parameters(&self, edge: EdgeId) -> Option<MotionParameters> {
         match edge {
-            EdgeId::Pair(index) => Some(self.pairs[index].fit.as_ref()?.chart),
-            EdgeId::Anchor(p) => Some(self.parts[p].part.anchor.as_ref()?.chart),
+            EdgeId::Pair(index) => Some(self.pairs[index].fit.as_ref()?.parameters),
+            EdgeId::Anchor(p) => Some(self.parts[p].part.anchor.as_ref()?.parameters),
         }
     }
 
@@ -168,11 +169,9 @@ impl<'a> Network<'a> {
 
     /// Edges of parts that were not placed carry nothing.
     pub fn retire_unplaced(&mut self, poses: &[Option<Similarity>]) {
-        for edge in self.pairs.iter_mut().map(|pair| &mut pair.edge).filter(|edge| edge.used) {
+        for edge in self.pairs.iter_mut().map(|pair| &mut pair.edge).filter(|edge| edge.is_used()) {
             if poses[edge.a].is_none() || poses[edge.b].is_none() {
-                edge.used = false;
-                let elsewhere = || "its parts belong to another group than the one that was placed".to_owned();
-                edge.reason = Some(self.ambiguity.clone().unwrap_or_else(elsewhere));
+                edge.refusal = Some(self.ambiguity.clone().unwrap_or(EdgeFault::OtherGroup));
             }
         }
         (0..poses.len()).for_each(|p| self.anchored[p] &= poses[p].is_some());

@@ -1,7 +1,7 @@
 //! All parts at once: which edges hold, where every part stands, and what that makes the whole.
 //!
 //! Question     where does each part stand in one frame, and which of the measured edges are not to be believed?
-//! Input        pairs of parts, each with its estimate and opinion, and anchors in a city
+//! Input        pairs of parts, each with its estimate and decision, and anchors in a city
 //! Output       [`Solved`]: a verdict, every part's place or the reason why it has none, the edges
 //! Method       the strongest edges place the parts (`graph`); the edges that the others contradict are put aside
 //!              (`cycles`); parts that overlap

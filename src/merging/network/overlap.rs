@@ -9,9 +9,10 @@
 
 use super::graph::Network;
 use crate::geometry::Similarity;
+use crate::merging::fault::{EdgeFault, PairFault};
 use crate::merging::limits::MergeLimits;
 use crate::merging::outcome::{Edge, EdgeSource};
-use crate::merging::pairwise::{OwnFit, Pair, PairDecision, PairFault, PlaneEvidence, settle_planes, whole_planes};
+use crate::merging::pairwise::{OwnFit, Pair, PairDecision, SharedPlanes, settle_planes, whole_planes};
 use crate::merging::prepared::PreparedPart;
 
 /// Pairs of placed parts that overlap in the city and that no edge joins yet.
@@ -40,10 +41,10 @@ fn overlap(
     let planes = whole_planes([&parts[a], &parts[b]], a_from_b, floor, limits)?;
     let OwnFit { fit, .. } = settle_planes(&planes, a_from_b, &limits.fit);
     let off = off_surfaces(&planes, a_from_b);
-    let used = off < limits.network.overlap_floors * floor;
-    let fault = (!used).then_some(PairFault::SurfacesApart { off: off / radius });
-    let reason = fault.as_ref().map(ToString::to_string);
-    let opinion = fault.map_or(PairDecision::Accepted, PairDecision::Open);
+    let is_close = off < limits.network.overlap_floors * floor;
+    let fault = (!is_close).then_some(PairFault::SurfacesApart { off: off / radius });
+    let refusal = fault.clone().map(EdgeFault::from);
+    let decision = fault.map_or(PairDecision::Accepted, PairDecision::Open);
     let edge = Edge {
         a,
         b,
@@ -52,14 +53,14 @@ fn overlap(
         pairs: planes.correspondences(),
         inliers: fit.inlier_count(),
         rms: fit.rms,
-        used,
-        reason,
+        refusal,
+        note: None,
     };
-    Some(Pair { edge, fit: Some(fit), opinion })
+    Some(Pair { edge, fit: Some(fit), decision })
 }
 
 /// Root mean square distance of points from the surfaces that they should lie on, a's units.
-fn off_surfaces(planes: &PlaneEvidence, a_from_b: &Similarity) -> f64 {
+fn off_surfaces(planes: &SharedPlanes, a_from_b: &Similarity) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0f64);
     for group in &planes.groups {
         for point in &group.points {
@@ -95,7 +96,7 @@ mod tests {
     fn surfaces_that_both_parts_see_bring_them_together() {
         let (parts, by_city) = corner();
         let pair = overlap_of(&parts, &by_city).unwrap();
-        assert!(pair.edge.used && pair.edge.source == EdgeSource::City, "{:?}", pair.edge);
+        assert!(pair.edge.is_used() && pair.edge.source == EdgeSource::City, "{:?}", pair.edge);
         assert!(pair.edge.inliers > 1000, "{}", pair.edge.inliers);
         let a_from_b = pair.fit.unwrap().a_from_b;
         for corner in [Point3::origin(), Point3::new(6.0, 6.0, 0.0), Point3::new(0.0, 6.0, 4.0)] {
@@ -110,7 +111,7 @@ mod tests {
         let (parts, by_city) = corner();
         let off = Similarity { translation: by_city.translation + Vector3::new(0.3, 0.25, 0.2), ..by_city };
         let edge = overlap_of(&parts, &off).unwrap().edge;
-        assert!(!edge.used && edge.reason.is_some_and(|told| told.contains("of the extent apart")));
+        assert!(!edge.is_used() && edge.reason().is_some_and(|told| told.contains("of the extent apart")));
     }
 
     #[test]

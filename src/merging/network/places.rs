@@ -8,7 +8,7 @@ use super::graph::Network;
 use crate::geometry::Similarity;
 use crate::merging::outcome::{PartPlace, PartSupport};
 use crate::merging::pairwise::{Pair, PairDecision};
-use crate::robust::{Chart, Matrix7};
+use crate::robust::{Matrix7, MotionParameters};
 use crate::verdict::Freedom;
 
 /// All parts in the order given; `held`: how firmly the adjustment holds those that it moved.
@@ -33,7 +33,7 @@ pub(super) fn places(network: &Network<'_>, poses: &[Option<Similarity>], held: 
 
 fn support(part: usize, network: &Network<'_>) -> PartSupport {
     let given = network.parts[part].part;
-    let own = || network.pairs.iter().map(|l| &l.edge).filter(|e| e.used && e.touches(part));
+    let own = || network.pairs.iter().map(|l| &l.edge).filter(|e| e.is_used() && e.touches(part));
     let photos: BTreeSet<&String> = own().flat_map(|e| &e.shared_photos).collect();
     PartSupport {
         images: given.sfm.images.len(),
@@ -51,16 +51,18 @@ fn loose_freedoms(part: usize, network: &Network<'_>, candidate: Option<Similari
         return anchor.freedoms.clone();
     }
     let Some(pose) = candidate else { return Vec::new() };
-    let is_open = |l: &&Pair| matches!(l.opinion, PairDecision::Open(_)) && l.edge.a.max(l.edge.b) == part;
+    let is_open = |l: &&Pair| matches!(l.decision, PairDecision::Open(_)) && l.edge.a.max(l.edge.b) == part;
     let Some((pair, fit)) = network.pairs.iter().find(is_open).and_then(|l| Some((l, l.fit.as_ref()?))) else {
         return Vec::new();
     };
     // The unknowns are in the frame of the edge's first part, which is the common one or this part's own.
-    let common_from_chart = if pair.edge.a == part { pose } else { Similarity::identity() };
-    let chart =
-        Chart::of_similarity(common_from_chart.apply(&fit.chart.center), common_from_chart.scale * fit.chart.radius);
-    let information = turned(&fit.information, &common_from_chart);
-    in_a_parts_frame(&Held { chart, information }, network.limits)
+    let common_from_own = if pair.edge.a == part { pose } else { Similarity::identity() };
+    let parameters = MotionParameters::of_similarity(
+        common_from_own.apply(&fit.parameters.center),
+        common_from_own.scale * fit.parameters.radius,
+    );
+    let information = turned(&fit.information, &common_from_own);
+    in_a_parts_frame(&Held { parameters, information }, network.limits)
 }
 
 /// Information in the unknowns of another frame.
@@ -75,7 +77,7 @@ fn turned(information: &Matrix7, to_from: &Similarity) -> Matrix7 {
 fn candidates(network: &Network<'_>, poses: &[Option<Similarity>]) -> Vec<Option<Similarity>> {
     let anchor = |p: usize| network.parts[p].part.anchor.as_ref().map(|a| a.common_from_part);
     let mut found: Vec<Option<Similarity>> = (0..poses.len()).map(|p| poses[p].map_or(anchor(p), |_| None)).collect();
-    for pair in network.pairs.iter().filter(|l| matches!(l.opinion, PairDecision::Open(_))) {
+    for pair in network.pairs.iter().filter(|l| matches!(l.decision, PairDecision::Open(_))) {
         let (Some(fit), a, b) = (&pair.fit, pair.edge.a, pair.edge.b) else { continue };
         let (first, second, second_from_first) = match a < b {
             true => (a, b, fit.a_from_b),
@@ -91,7 +93,7 @@ fn candidates(network: &Network<'_>, poses: &[Option<Similarity>]) -> Vec<Option
 
 fn why_not(part: usize, network: &Network<'_>) -> String {
     if let Some(fault) = &network.anchor_faults[part] {
-        return fault.clone();
+        return fault.to_string();
     }
     if let Some(anchor) = network.parts[part].part.anchor.as_ref().filter(|a| !a.is_determined()) {
         return anchor.reason.clone();
@@ -100,7 +102,7 @@ fn why_not(part: usize, network: &Network<'_>) -> String {
     let other = |l: &Pair| if l.edge.a == part { l.edge.b } else { l.edge.a };
     let told: Vec<String> = own
         .iter()
-        .filter_map(|l| Some(format!("with {}: {}", network.parts[other(l)].name(), l.edge.reason.as_ref()?)))
+        .filter_map(|l| Some(format!("with {}: {}", network.parts[other(l)].name(), l.edge.reason()?)))
         .collect();
     if told.is_empty() {
         return "it shares no photograph (by name) with the other parts; give a city and a start, or a photograph that both show"

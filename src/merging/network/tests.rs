@@ -6,7 +6,7 @@ use crate::merging::outcome::EdgeSource;
 use crate::merging::pairwise::{Fit, PairDecision};
 use crate::merging::part::{Anchor, Part};
 use crate::reconstruction::Reconstruction;
-use crate::robust::{Chart, Matrix7};
+use crate::robust::{Matrix7, MotionParameters};
 use crate::verdict::Verdict;
 
 /// A cloud of radius about one, the same in the world for all parts.
@@ -36,20 +36,22 @@ fn pair(a: usize, b: usize, inliers: usize, error: &Similarity) -> Pair {
         pairs: inliers,
         inliers,
         rms: 0.01,
-        used: true,
-        reason: None,
+        refusal: None,
+        note: None,
     };
-    let chart =
-        Chart::of_similarity(world_from_part(a).inverse().apply(&Point3::origin()), 1.7 / world_from_part(a).scale);
+    let parameters = MotionParameters::of_similarity(
+        world_from_part(a).inverse().apply(&Point3::origin()),
+        1.7 / world_from_part(a).scale,
+    );
     let fit = Fit {
         a_from_b: world_from_part(a).inverse() * *error * world_from_part(b),
-        chart,
+        parameters,
         information: Matrix7::identity() * 1e6,
         bend: 1e-3,
         inliers: vec![true; inliers],
         rms: 0.01,
     };
-    Pair { edge, fit: Some(fit), opinion: PairDecision::Accepted }
+    Pair { edge, fit: Some(fit), decision: PairDecision::Accepted }
 }
 
 fn shifted(along_x: f64) -> Similarity {
@@ -88,9 +90,9 @@ fn names_the_wrong_edge_though_it_is_the_strongest() {
     let found = solved(4, pairs);
     assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
     assert_placed(&found, &[0, 1, 2, 3]);
-    let unused: Vec<&Edge> = found.edges.iter().filter(|e| !e.used).collect();
+    let unused: Vec<&Edge> = found.edges.iter().filter(|e| !e.is_used()).collect();
     assert_eq!(unused.len(), 1);
-    let reason = unused[0].reason.clone().unwrap();
+    let reason = unused[0].reason().unwrap();
     assert!(reason.contains("part 1 and part 2") && reason.contains('%'), "{reason}");
 }
 
@@ -125,7 +127,7 @@ fn anchored(k: usize, error: &Similarity, sigma: f64) -> Part {
     let anchor = Anchor {
         common_from_part: *error * world_from_part(k),
         verdict: Verdict::Aligned,
-        chart: Chart::of_similarity(Point3::origin(), 1.7),
+        parameters: MotionParameters::of_similarity(Point3::origin(), 1.7),
         information: Matrix7::identity() / (sigma * sigma),
         reason: "in the city aligned".into(),
         freedoms: Vec::new(),
@@ -157,8 +159,8 @@ fn an_anchor_that_the_edges_contradict_is_named_or_nothing_is_said() {
     let parts: Vec<Part> = (0..3).map(|k| off(k, 1)).collect();
     let found = solved_in(&parts, &[2, 1, 0], links(3));
     assert_eq!(found.verdict, MergeVerdict::Merged, "{}", found.reason);
-    let unused: Vec<&Edge> = found.edges.iter().filter(|e| !e.used).collect();
-    assert!(unused.iter().all(|e| e.reason.as_ref().unwrap().contains("part 1 and the city")), "{unused:?}");
+    let unused: Vec<&Edge> = found.edges.iter().filter(|e| !e.is_used()).collect();
+    assert!(unused.iter().all(|e| e.reason().unwrap().contains("part 1 and the city")), "{unused:?}");
     let moved = found.places[1].merged_from_part.unwrap() * world_from_part(1).inverse();
     assert!(moved.translation.norm() < 1e-3, "{moved:?}");
 

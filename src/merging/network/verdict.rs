@@ -14,7 +14,7 @@ pub(super) fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerd
         left.join(", ")
     };
     if placed == places.len() && placed > 1 {
-        let is_shared = |l: &&Pair| l.edge.used && l.edge.source != EdgeSource::City;
+        let is_shared = |l: &&Pair| l.edge.is_used() && l.edge.source != EdgeSource::City;
         let used: Vec<&Pair> = network.pairs.iter().filter(is_shared).collect();
         let inliers: usize = used.iter().map(|l| l.edge.inliers).sum();
         let photos: usize = used.iter().map(|l| l.edge.shared_photos.len()).sum();
@@ -36,13 +36,13 @@ pub(super) fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerd
         );
     }
     if let Some(reason) = &network.ambiguity {
-        return (MergeVerdict::Ambiguous, reason.clone());
+        return (MergeVerdict::Ambiguous, reason.to_string());
     }
     let in_city = |verdict| network.parts.iter().any(|p| p.part.anchor.as_ref().is_some_and(|a| a.verdict == verdict));
     if in_city(Verdict::Ambiguous) {
         return (MergeVerdict::Ambiguous, format!("parts stand in the city in more than one way: {}", names()));
     }
-    let open = network.pairs.iter().any(|l| matches!(l.opinion, PairDecision::Open(_)));
+    let open = network.pairs.iter().any(|l| matches!(l.decision, PairDecision::Open(_)));
     if open || in_city(Verdict::Undetermined) {
         return (MergeVerdict::Undetermined, format!("how the parts stand to each other is not fixed: {}", names()));
     }
@@ -50,7 +50,7 @@ pub(super) fn verdict(places: &[PartPlace], network: &Network<'_>) -> (MergeVerd
 }
 
 fn stands_in_city(placed: usize, network: &Network<'_>) -> String {
-    let overlaps = network.pairs.iter().filter(|l| l.edge.used && l.edge.source == EdgeSource::City);
+    let overlaps = network.pairs.iter().filter(|l| l.edge.is_used() && l.edge.source == EdgeSource::City);
     match overlaps.map(|l| l.edge.inliers).sum() {
         0 => format!("each of {placed} parts stands in the city by itself"),
         inliers => format!(

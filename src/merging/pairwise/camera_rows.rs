@@ -5,10 +5,10 @@
 
 use super::point_rows::MEDIAN_NORM;
 use super::rows::Rows;
-use super::track_evidence::CameraPair;
+use super::shared_tracks::CameraPair;
 use crate::geometry::{Matrix3, Similarity, Vector3};
 use crate::merging::limits::CameraFitLimits;
-use crate::robust::{Chart, NormalEquations, Vector7};
+use crate::robust::{MotionParameters, NormalEquations, Vector7};
 
 /// No bend is smaller than this share of a camera's depth where its centre is weighed: keeps the sigma from zero.
 const LEAST_BEND: f64 = 1e-4;
@@ -52,15 +52,15 @@ impl CameraRows<'_> {
 }
 
 impl Rows for CameraRows<'_> {
-    fn add_rows(&self, a_from_b: &Similarity, chart: &Chart, factor: f64, sums: &mut NormalEquations) {
+    fn add_rows(&self, a_from_b: &Similarity, parameters: &MotionParameters, factor: f64, sums: &mut NormalEquations) {
         for camera in &self.cameras {
             let x = a_from_b.apply(&camera.center_b);
             let whitening = self.center_whitening(camera);
             let (center, turn) = self.residuals(camera, a_from_b);
             for k in 0..3 {
-                sums.add(&chart.row(&x, &whitening.row(k).transpose()), center[k], factor);
+                sums.add(&parameters.row(&x, &whitening.row(k).transpose()), center[k], factor);
                 let mut row = Vector7::zeros();
-                row[k] = 1.0 / (chart.radius * self.turn_sigma_rad(camera));
+                row[k] = 1.0 / (parameters.radius * self.turn_sigma_rad(camera));
                 sums.add(&row, turn[k], factor);
             }
         }

@@ -7,7 +7,7 @@
 //! Assumptions  blocks err independently: a deformation of the whole part is not seen
 //! Source       Liang and Zeger (1986), "sandwich" covariance; Kish (1965) for the name
 
-use super::rows::Piece;
+use super::rows::PlacedEquations;
 use crate::geometry::Point3;
 use crate::robust::{Motion, NormalEquations, Vector7};
 
@@ -15,16 +15,16 @@ use crate::robust::{Motion, NormalEquations, Vector7};
 const SPLITS: u32 = 4;
 
 /// The factor on the variance, at least `least`, of what pieces say at the optimum.
-pub(super) fn design_effect(pieces: &[Piece], least: f64) -> f64 {
-    let places: Vec<Point3<f64>> = pieces.iter().map(|p| p.place).collect();
+pub(super) fn design_effect(placed: &[PlacedEquations], least: f64) -> f64 {
+    let places: Vec<Point3<f64>> = placed.iter().map(|p| p.place).collect();
     let mut all = NormalEquations::default();
-    pieces.iter().for_each(|one| all.merge(&one.sums, 1.0));
+    placed.iter().for_each(|one| all.merge(&one.sums, 1.0));
     let Some(covariance) = all.full().try_inverse() else { return 1.0 };
     let mut indices: Vec<usize> = (0..places.len()).collect();
     let unknowns = Motion::Similarity.unknowns() as f64;
     let mut effect = 0.0;
     for block in blocks(&places, &mut indices, SPLITS) {
-        let gradient = block.iter().map(|&i| pieces[i].sums.gradient).sum::<Vector7>();
+        let gradient = block.iter().map(|&i| placed[i].sums.gradient).sum::<Vector7>();
         effect += gradient.dot(&(covariance * gradient)) / unknowns;
     }
     if effect.is_finite() { effect.max(least) } else { 1.0 }
@@ -59,7 +59,7 @@ mod tests {
     /// what independent rows would have.
     fn effect_of_repeats(repeats: usize) -> f64 {
         const ROWS: usize = 7 * 1024;
-        let mut pieces = Vec::new();
+        let mut placed = Vec::new();
         let mut random = Random::stream(1, 0);
         let mut error = 0.0;
         for i in 0..ROWS {
@@ -72,9 +72,9 @@ mod tests {
             row[k % 7] = 1.0;
             let mut one = NormalEquations::default();
             one.add(&row, error, 1.0);
-            pieces.push(Piece { place: Point3::new(i as f64, 0.0, 0.0), sums: one });
+            placed.push(PlacedEquations { place: Point3::new(i as f64, 0.0, 0.0), sums: one });
         }
-        design_effect(&pieces, 0.04)
+        design_effect(&placed, 0.04)
     }
 
     #[test]

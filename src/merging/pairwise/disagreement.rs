@@ -15,17 +15,17 @@ pub(super) struct Difference {
     unknowns: usize,
 }
 
-/// `own` says by itself where the part is; `other` is another opinion.
+/// `own` says by itself where the part is; `other` is another decision.
 pub(super) fn difference(own: &Fit, other: &Similarity) -> Difference {
-    let unknowns = own.chart.between(&own.a_from_b, other);
+    let unknowns = own.parameters.between(&own.a_from_b, other);
     let sigmas = unknowns.dot(&(own.information * unknowns)).max(0.0).sqrt();
-    Difference { sigmas, share: unknowns.norm() / own.chart.radius, unknowns: own.chart.motion.unknowns() }
+    Difference { sigmas, share: unknowns.norm() / own.parameters.radius, unknowns: own.parameters.motion.unknowns() }
 }
 
 impl Difference {
     /// More than chance and more than matters.
     pub fn is_disagreement(&self, limits: &MergeLimits) -> bool {
-        self.sigmas > limits.sources.disagree_sigmas && self.share > limits.judge.determined
+        self.sigmas > limits.sources.disagree_sigmas && self.share > limits.decision.determined
     }
 
     /// How many times the variance must be greater for such a difference to be nothing special, at least 1 (Birge 1932).

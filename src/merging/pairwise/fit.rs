@@ -7,7 +7,7 @@ use super::design_effect::design_effect;
 use super::rows::{Rows, Source};
 use crate::geometry::Similarity;
 use crate::merging::limits::FitLimits;
-use crate::robust::{Chart, Matrix7, NormalEquations, median};
+use crate::robust::{Matrix7, MotionParameters, NormalEquations, median};
 
 /// Steps of Gauss-Newton, and turns of pose and bend.
 const ROUNDS: usize = 25;
@@ -21,8 +21,8 @@ const HALVINGS: usize = 25;
 #[derive(Clone, Debug)]
 pub(in crate::merging) struct Fit {
     pub a_from_b: Similarity,
-    pub chart: Chart,
-    /// In the chart's unknowns, a's units.
+    pub parameters: MotionParameters,
+    /// In the motion's unknowns, a's units.
     pub information: Matrix7,
     /// The leading source's bend, a share of the radius.
     pub bend: f64,
@@ -63,10 +63,10 @@ pub(super) struct Sources<'a> {
 }
 
 impl Sources<'_> {
-    fn equations(&self, pose: &Similarity, chart: &Chart) -> NormalEquations {
+    fn equations(&self, pose: &Similarity, parameters: &MotionParameters) -> NormalEquations {
         let mut sums = NormalEquations::default();
-        self.lead.add_rows(pose, chart, 1.0, &mut sums);
-        self.others.iter().for_each(|term| term.rows.add_rows(pose, chart, term.factor, &mut sums));
+        self.lead.add_rows(pose, parameters, 1.0, &mut sums);
+        self.others.iter().for_each(|term| term.rows.add_rows(pose, parameters, term.factor, &mut sums));
         sums
     }
 
@@ -74,10 +74,10 @@ impl Sources<'_> {
     pub fn refine(&self, start: &Similarity) -> Similarity {
         let mut pose = *start;
         for _ in 0..ROUNDS {
-            let chart = self.lead.chart(&pose);
-            let step = chart.step(&self.equations(&pose, &chart), chart.radius);
-            pose = chart.moved(&pose, &step);
-            if step.norm() < CONVERGED * chart.radius {
+            let parameters = self.lead.parameters(&pose);
+            let step = parameters.step(&self.equations(&pose, &parameters), parameters.radius);
+            pose = parameters.moved(&pose, &step);
+            if step.norm() < CONVERGED * parameters.radius {
                 break;
             }
         }
@@ -86,11 +86,11 @@ impl Sources<'_> {
 
     /// What is to be told of an optimum.
     pub fn finish(&self, a_from_b: Similarity, limits: &FitLimits) -> Fit {
-        let chart = self.lead.chart(&a_from_b);
-        let mut information = self.equations(&a_from_b, &chart).full();
+        let parameters = self.lead.parameters(&a_from_b);
+        let mut information = self.equations(&a_from_b, &parameters).full();
         let own = Term { rows: self.lead, factor: 1.0 };
         for term in [own].iter().chain(self.others) {
-            if let Some(noise) = term.rows.noise(&a_from_b, &chart) {
+            if let Some(noise) = term.rows.noise(&a_from_b, &parameters) {
                 information = without(&information, &(noise * term.factor));
             }
         }
@@ -100,7 +100,7 @@ impl Sources<'_> {
         let inside = misses.iter().filter(|m| m.whitened_sq < gate_sq);
         let (sum, count) = inside.fold((0.0, 0usize), |(sum, count), m| (sum + m.distance_sq, count + 1));
         let rms = (sum / count.max(1) as f64).sqrt();
-        Fit { a_from_b, chart, information, bend: self.lead.bend(), inliers, rms }
+        Fit { a_from_b, parameters, information, bend: self.lead.bend(), inliers, rms }
     }
 }
 
@@ -124,7 +124,7 @@ pub(super) fn settle_near(source: &mut impl Source, start: &Similarity, limits: 
 /// What a source says by itself at its optimum.
 pub(super) fn own_fit(source: &dyn Source, pose: Similarity, limits: &FitLimits) -> OwnFit {
     let mut fit = Sources { lead: source, others: &[] }.finish(pose, limits);
-    let design_effect = design_effect(&source.pieces(&pose, &fit.chart), limits.least_effect);
+    let design_effect = design_effect(&source.placed(&pose, &fit.parameters), limits.least_effect);
     fit.information /= design_effect;
     OwnFit { fit, design_effect }
 }

@@ -11,18 +11,18 @@
 //!                 pulls the less, the less it can be right.
 //!              4. Once more in the same way, with all surfaces that both parts have in place of the superpixels.
 //! Assumptions  the pairs are the firmer source, since they hold three directions each
-//! Fails when   pairs and planes are wrong together; the cameras and the shape are judged apart from this ([`super::judge`])
+//! Fails when   pairs and planes are wrong together; the cameras and the shape are judged apart from this ([`super::decision`])
 
 use super::disagreement::difference;
-use super::fault::PairFault;
 use super::fit::{Fit, OwnFit, Sources, Term, own_fit};
 use super::on_planes::{share_on_planes, too_few};
 use super::plane_rows::{PlaneRows, settle_planes};
 use super::plane_search::fit_planes;
-use super::planes::PlaneEvidence;
-use super::track_evidence::TrackEvidence;
+use super::planes::SharedPlanes;
+use super::shared_tracks::SharedTracks;
 use super::track_fit::TrackFit;
 use super::whole_planes::whole_planes;
+use crate::merging::fault::PairFault;
 use crate::merging::limits::MergeLimits;
 use crate::merging::prepared::PreparedPart;
 
@@ -37,27 +37,27 @@ pub(super) struct Joint {
 
 /// Pairs and cameras, to which planes are added.
 #[derive(Clone, Copy)]
-pub(super) struct Tracks<'a> {
-    pub evidence: &'a TrackEvidence,
+pub(super) struct TrackEstimate<'a> {
+    pub tracks: &'a SharedTracks,
     pub found: &'a TrackFit,
     pub limits: &'a MergeLimits,
 }
 
-impl Tracks<'_> {
+impl TrackEstimate<'_> {
     /// The answer without planes.
     pub fn alone(&self, note: Option<String>) -> Joint {
         Joint { fit: self.found.fit.clone(), note, contradiction: None }
     }
 
     /// The answer with the planes of superpixels, where they can be heard.
-    pub fn with_planes(&self, planes: &PlaneEvidence, seed: u64) -> Joint {
+    pub fn with_planes(&self, planes: &SharedPlanes, seed: u64) -> Joint {
         let (by_pairs, limits) = (&self.found.fit, self.limits);
-        if too_few(planes, &limits.judge).is_some() {
+        if too_few(planes, &limits.decision).is_some() {
             return self.alone(None);
         }
         let Some(own) = fit_planes(planes, limits, seed) else { return self.alone(None) };
         let own_share = share_on_planes(planes, &own.fit.a_from_b, limits.sources.on_plane);
-        if own_share < limits.judge.agreeing_share {
+        if own_share < limits.decision.agreeing_share {
             return self.alone(Some(format!(
                 "the planes of the superpixels were left out: only {:.0} % of the points on them agree with one similarity",
                 100.0 * own_share
@@ -80,16 +80,16 @@ impl Tracks<'_> {
         if joint.contradiction.is_some() {
             return joint;
         }
-        match whole_planes(parts, &joint.fit.a_from_b, joint.fit.bend * self.evidence.radius_a, self.limits) {
+        match whole_planes(parts, &joint.fit.a_from_b, joint.fit.bend * self.tracks.radius_a, self.limits) {
             Some(planes) => Joint { fit: self.joint_fit(&planes), ..joint },
             None => joint,
         }
     }
 
-    fn joint_fit(&self, planes: &PlaneEvidence) -> Fit {
+    fn joint_fit(&self, planes: &SharedPlanes) -> Fit {
         let (limits, place) = (&self.limits.fit, &self.found.fit.a_from_b);
-        let pairs = self.found.pairs(self.evidence, limits);
-        let cameras = self.found.cameras(self.evidence, limits);
+        let pairs = self.found.pairs(self.tracks, limits);
+        let cameras = self.found.cameras(self.tracks, limits);
         let pairs_alone = own_fit(&pairs, Sources { lead: &pairs, others: &[] }.refine(place), limits);
         let near = settle_planes(planes, place, limits);
         let rows = PlaneRows { planes, bend: near.fit.bend, limits };
@@ -117,8 +117,8 @@ impl Tracks<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::shared_tracks::PointPair;
     use super::super::test_scene::{RADIUS, scene, truth};
-    use super::super::track_evidence::PointPair;
     use super::super::track_fit::fit_tracks;
     use super::*;
     use crate::geometry::{Matrix3, Point3, Vector3};
@@ -126,7 +126,7 @@ mod tests {
     const NOISE: f64 = 0.002;
 
     /// Pairs that put part b where it is, but for a shift (a's units).
-    fn pairs(shift: f64) -> TrackEvidence {
+    fn pairs(shift: f64) -> SharedTracks {
         let pair = |k: usize| {
             let t = k as f64;
             let in_a = Point3::new((t * 0.7).sin() * 4.0, (t * 1.3).cos() * 3.0, (t * 0.31).sin() * 3.0);
@@ -138,7 +138,7 @@ mod tests {
                 covariance_b: Matrix3::identity() * (NOISE * NOISE / 3.0),
             }
         };
-        TrackEvidence {
+        SharedTracks {
             photos: Vec::new(),
             pairs: (0..80).map(pair).collect(),
             cameras: Vec::new(),
@@ -149,12 +149,12 @@ mod tests {
         }
     }
 
-    fn joined(shift: f64, planes: &PlaneEvidence) -> (Fit, Joint) {
-        let evidence = pairs(shift);
+    fn joined(shift: f64, planes: &SharedPlanes) -> (Fit, Joint) {
+        let tracks = pairs(shift);
         let limits = MergeLimits::default();
-        let by_pairs = fit_tracks(&evidence, &limits, 1).unwrap();
-        let tracks = Tracks { evidence: &evidence, found: &by_pairs, limits: &limits };
-        let joint = tracks.with_planes(planes, 1);
+        let by_pairs = fit_tracks(&tracks, &limits, 1).unwrap();
+        let estimate = TrackEstimate { tracks: &tracks, found: &by_pairs, limits: &limits };
+        let joint = estimate.with_planes(planes, 1);
         (by_pairs.fit, joint)
     }
 

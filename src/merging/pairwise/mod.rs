@@ -3,26 +3,25 @@
 //! Question     which similarity carries one part onto the other, how far is it known, and is it to be believed?
 //! Input        two prepared parts that share photographs
 //! Output       [`Pair`]: an edge for the report, a [`Fit`] with its information, a [`PairDecision`]
-//! Method       `track_evidence`, `superpixel_planes` and `whole_planes` gather what the parts share. Point pairs, cameras and planes are
+//! Method       `shared_tracks`, `superpixel_planes` and `whole_planes` gather what the parts share. Point pairs, cameras and planes are
 //!              rows of one least squares (`rows`: `point_rows`, `camera_rows`, `plane_rows`; `fit`), found without a start
 //!              by `track_fit` and
-//!              `plane_search`, brought together by `joint`. One judge (`judge`) hears what either kind of evidence answers
-//!              (`track_testimony`, `plane_testimony`)
+//!              `plane_search`, brought together by `joint`. One decision (`decision`) rests on the same checks of either source
+//!              (`track_checks`, `plane_checks`)
 //! Assumptions  a photograph of one name shows the same pixels in both parts, at whatever size
 //! Fails when   the shared photographs have too few keypoints in common, or show one plane
 
 mod camera_rows;
 mod design_effect;
 mod disagreement;
-mod fault;
 mod fit;
 mod joint;
-mod judge;
+mod decision;
 mod on_planes;
 mod pair;
 mod plane_rows;
 mod plane_search;
-mod plane_testimony;
+mod plane_checks;
 mod planes;
 mod point_rows;
 mod rows;
@@ -30,21 +29,20 @@ mod same_place;
 mod superpixel_planes;
 #[cfg(test)]
 mod test_scene;
-mod track_evidence;
+mod shared_tracks;
 mod track_fit;
-mod track_testimony;
+mod track_checks;
 mod umeyama;
 mod whole_planes;
 
-pub(super) use fault::PairFault;
+pub(super) use decision::PairDecision;
 #[cfg(test)]
 pub(super) use fit::Fit;
 pub(super) use fit::OwnFit;
-pub(super) use judge::PairDecision;
-pub use pair::EvidenceChoice;
+pub use pair::PairSources;
 pub(super) use pair::{Comparison, Pair};
 pub(super) use plane_rows::settle_planes;
-pub(super) use planes::PlaneEvidence;
+pub(super) use planes::SharedPlanes;
 #[cfg(test)]
 pub(super) use test_scene::{ACROSS, part, truth};
 pub(super) use whole_planes::whole_planes;

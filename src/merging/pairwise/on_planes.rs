@@ -1,12 +1,12 @@
 //! How many points lie on their planes, whatever the sigmas say.
 
-use super::fault::PairFault;
-use super::planes::{PlaneEvidence, PlaneOf};
+use super::planes::{PlaneOf, SharedPlanes};
 use crate::geometry::Similarity;
-use crate::merging::limits::PairJudgeLimits;
+use crate::merging::fault::PairFault;
+use crate::merging::limits::PairDecisionLimits;
 
 /// Share of the points that lie on their planes, to `on_plane` of the radius, each group counting by the root of its points.
-pub(super) fn share_on_planes(planes: &PlaneEvidence, a_from_b: &Similarity, on_plane: f64) -> f64 {
+pub(super) fn share_on_planes(planes: &SharedPlanes, a_from_b: &Similarity, on_plane: f64) -> f64 {
     let (mut inside, mut all) = (0.0, 0.0);
     for group in &planes.groups {
         let gate = match group.plane_of {
@@ -23,8 +23,8 @@ pub(super) fn share_on_planes(planes: &PlaneEvidence, a_from_b: &Similarity, on_
 }
 
 /// Why the planes cannot be heard, if so.
-pub(super) fn too_few(evidence: &PlaneEvidence, limits: &PairJudgeLimits) -> Option<PairFault> {
-    let (planes, points) = (evidence.groups.len(), evidence.correspondences());
+pub(super) fn too_few(planes: &SharedPlanes, limits: &PairDecisionLimits) -> Option<PairFault> {
+    let (planes, points) = (planes.groups.len(), planes.correspondences());
     let are_few = planes < limits.fewest_planes || points < limits.fewest_on_planes;
     are_few.then_some(PairFault::FewPlanes { planes, points })
 }
@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn a_handful_of_planes_is_too_few() {
-        let (mut planes, limits) = (scene(0.003, |x| *x), MergeLimits::default().judge);
+        let (mut planes, limits) = (scene(0.003, |x| *x), MergeLimits::default().decision);
         assert_eq!(too_few(&planes, &limits), None);
         planes.groups.truncate(7);
         assert!(too_few(&planes, &limits).is_some());

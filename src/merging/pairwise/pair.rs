@@ -1,26 +1,27 @@
-//! Two parts with what they share: evidence, estimate, opinion.
+//! Two parts that share photographs, compared: what they share, the estimate, the decision.
 
 use rayon::prelude::*;
 
+use super::decision::{PairDecision, decide};
 use super::fit::{Fit, OwnFit};
-use super::joint::Tracks;
-use super::judge::{PairDecision, judge};
+use super::joint::TrackEstimate;
+use super::plane_checks::PlaneChecks;
 use super::plane_search::fit_planes;
-use super::plane_testimony::PlaneTestimony;
-use super::planes::PlaneEvidence;
+use super::planes::SharedPlanes;
+use super::shared_tracks::{SharedTracks, shared_tracks};
 use super::superpixel_planes::superpixel_planes;
-use super::track_evidence::{TrackEvidence, shared_tracks};
+use super::track_checks::TrackChecks;
 use super::track_fit::fit_tracks;
-use super::track_testimony::TrackTestimony;
+use crate::merging::fault::EdgeFault;
 use crate::merging::limits::MergeLimits;
 use crate::merging::outcome::{Edge, EdgeSource};
 use crate::merging::prepared::PreparedPart;
 use crate::merging::shared_photos::{SharedPhoto, shared_photos};
-use crate::observer::{Cancelled, Observer, go_on};
+use crate::observer::{Cancelled, Observer, check_cancelled};
 
 /// What is taken from the shared photographs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum EvidenceChoice {
+pub enum PairSources {
     /// Point pairs, camera poses, and planes where the parts have superpixels.
     #[default]
     All,
@@ -34,7 +35,7 @@ pub(in crate::merging) struct Pair {
     /// What is told of it.
     pub edge: Edge,
     pub fit: Option<Fit>,
-    pub opinion: PairDecision,
+    pub decision: PairDecision,
 }
 
 /// What is compared, and how.
@@ -42,7 +43,7 @@ pub(in crate::merging) struct Comparison<'a> {
     pub parts: &'a [PreparedPart<'a>],
     /// The parts by their content.
     pub order: &'a [usize],
-    pub evidence: EvidenceChoice,
+    pub sources: PairSources,
     pub limits: &'a MergeLimits,
     pub seed: u64,
     pub observer: &'a dyn Observer,
@@ -60,7 +61,7 @@ impl Comparison<'_> {
     pub fn pairs(&self) -> Result<Vec<Pair>, Cancelled> {
         let couples: Vec<Couple> = self.couples();
         self.prepare_surfaces(&couples);
-        let compare = |couple| go_on(self.observer).map(|()| self.compare(couple));
+        let compare = |couple| check_cancelled(self.observer).map(|()| self.compare(couple));
         couples.into_par_iter().map(compare).collect()
     }
 
@@ -77,9 +78,9 @@ impl Comparison<'_> {
         couples
     }
 
-    /// Makes the surfaces of the parts whose planes will be heard, each part's once.
+    /// Makes the surfaces of the parts whose planes will be used, each part's once.
     fn prepare_surfaces(&self, couples: &[Couple]) {
-        if self.evidence == EvidenceChoice::Planes {
+        if self.sources == PairSources::Planes {
             return;
         }
         let has_superpixels =
@@ -95,64 +96,56 @@ impl Comparison<'_> {
     fn compare(&self, Couple { a, b, photos }: Couple) -> Pair {
         let parts = [&self.parts[a], &self.parts[b]];
         let planes = superpixel_planes(parts, &photos, self.limits);
-        let evidence = shared_tracks(parts, photos, self.limits);
-        let found = match self.evidence {
-            EvidenceChoice::All => self.by_all(parts, &evidence, planes.as_ref()),
-            EvidenceChoice::Planes => self.by_planes(parts, &evidence, planes.as_ref()),
+        let tracks = shared_tracks(parts, photos, self.limits);
+        let found = match self.sources {
+            PairSources::All => self.by_all(parts, &tracks, planes.as_ref()),
+            PairSources::Planes => self.by_planes(parts, &tracks, planes.as_ref()),
         };
         let edge = Edge {
             a,
             b,
             source: found.source,
-            shared_photos: evidence.photos.into_iter().map(|p| p.name).collect(),
+            shared_photos: tracks.photos.into_iter().map(|p| p.name).collect(),
             pairs: found.pairs,
             inliers: found.fit.as_ref().map_or(0, Fit::inlier_count),
             rms: found.fit.as_ref().map_or(0.0, |f| f.rms),
-            used: found.opinion == PairDecision::Accepted,
-            reason: match &found.opinion {
-                PairDecision::Accepted => (!found.notes.is_empty()).then(|| found.notes.join("; ")),
-                PairDecision::Open(fault) | PairDecision::Rejected(fault) => Some(fault.to_string()),
-            },
+            refusal: found.decision.fault().cloned().map(EdgeFault::from),
+            note: (!found.notes.is_empty()).then(|| found.notes.join("; ")),
         };
-        Pair { edge, fit: found.fit, opinion: found.opinion }
+        Pair { edge, fit: found.fit, decision: found.decision }
     }
 
-    fn by_all(&self, parts: [&PreparedPart<'_>; 2], evidence: &TrackEvidence, planes: Option<&PlaneEvidence>) -> Found {
+    fn by_all(&self, parts: [&PreparedPart<'_>; 2], tracks: &SharedTracks, planes: Option<&SharedPlanes>) -> Found {
         let (limits, seed) = (self.limits, self.seed);
-        let by_tracks = fit_tracks(evidence, limits, seed);
+        let by_tracks = fit_tracks(tracks, limits, seed);
         let joint = by_tracks.as_ref().map(|found| {
-            let tracks = Tracks { evidence, found, limits };
+            let estimate = TrackEstimate { tracks, found, limits };
             match planes {
-                Some(planes) => tracks.on_whole_parts(tracks.with_planes(planes, seed), parts),
-                None => tracks.alone(None),
+                Some(planes) => estimate.on_whole_parts(estimate.with_planes(planes, seed), parts),
+                None => estimate.alone(None),
             }
         });
-        let testimony = TrackTestimony { evidence, fit: joint.as_ref().map(|j| &j.fit), limits, seed };
-        let opinion = judge(&testimony, evidence, parts.map(PreparedPart::name), limits);
+        let checks = TrackChecks { tracks, fit: joint.as_ref().map(|j| &j.fit), limits, seed };
+        let decision = decide(&checks, tracks, parts.map(PreparedPart::name), limits);
         let contradiction = joint.as_ref().and_then(|j| j.contradiction.clone());
-        let opinion = match (opinion, contradiction) {
+        let decision = match (decision, contradiction) {
             (PairDecision::Accepted, Some(contradiction)) => PairDecision::Open(contradiction),
-            (opinion, _) => opinion,
+            (decision, _) => decision,
         };
         let cameras_used = by_tracks.iter().flat_map(|t| &t.cameras_used);
-        let left_out = cameras_left_out(cameras_used.filter(|used| !**used).count(), evidence.cameras.len());
+        let left_out = cameras_left_out(cameras_used.filter(|used| !**used).count(), tracks.cameras.len());
         let (fit, note) = joint.map_or((None, None), |j| (Some(j.fit), j.note));
         let notes = left_out.into_iter().chain(note).collect();
-        Found { source: EdgeSource::Tracks, pairs: evidence.pairs.len(), fit, opinion, notes }
+        Found { source: EdgeSource::Tracks, pairs: tracks.pairs.len(), fit, decision, notes }
     }
 
-    fn by_planes(
-        &self,
-        parts: [&PreparedPart<'_>; 2],
-        evidence: &TrackEvidence,
-        planes: Option<&PlaneEvidence>,
-    ) -> Found {
+    fn by_planes(&self, parts: [&PreparedPart<'_>; 2], tracks: &SharedTracks, planes: Option<&SharedPlanes>) -> Found {
         let (limits, seed) = (self.limits, self.seed);
         let found: Option<OwnFit> = planes.and_then(|planes| fit_planes(planes, limits, seed));
-        let testimony = PlaneTestimony { planes, found: found.as_ref(), limits, seed };
-        let opinion = judge(&testimony, evidence, parts.map(PreparedPart::name), limits);
-        let pairs = planes.map_or(0, PlaneEvidence::correspondences);
-        Found { source: EdgeSource::Superpixels, pairs, fit: found.map(|f| f.fit), opinion, notes: Vec::new() }
+        let checks = PlaneChecks { planes, found: found.as_ref(), limits, seed };
+        let decision = decide(&checks, tracks, parts.map(PreparedPart::name), limits);
+        let pairs = planes.map_or(0, SharedPlanes::correspondences);
+        Found { source: EdgeSource::Superpixels, pairs, fit: found.map(|f| f.fit), decision, notes: Vec::new() }
     }
 }
 
@@ -161,7 +154,7 @@ struct Found {
     source: EdgeSource,
     pairs: usize,
     fit: Option<Fit>,
-    opinion: PairDecision,
+    decision: PairDecision,
     /// What is to be said although the parts are joined.
     notes: Vec<String>,
 }

@@ -10,19 +10,19 @@
 //!              average so much more than rows of the true normal
 
 use super::fit::{OwnFit, settle_near};
-use super::planes::{Measured, PlaneEvidence, PlaneGroup, PlaneOf};
-use super::rows::{Miss, Piece, Rows, Source};
+use super::planes::{Measured, PlaneGroup, PlaneOf, SharedPlanes};
+use super::rows::{Miss, PlacedEquations, Rows, Source};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::merging::limits::FitLimits;
 use crate::merging::point_covariance::KnownPoint;
-use crate::robust::{Chart, Matrix7, NormalEquations, truncated_quadratic, tukey_weight};
+use crate::robust::{Matrix7, MotionParameters, NormalEquations, truncated_quadratic, tukey_weight};
 
 /// Median of the size of a whitened residual with one degree of freedom.
 const MEDIAN_SIZE: f64 = 0.6745;
 
 #[derive(Clone, Copy)]
 pub(super) struct PlaneRows<'a> {
-    pub planes: &'a PlaneEvidence,
+    pub planes: &'a SharedPlanes,
     /// A share of the radius of the part that has a plane.
     pub bend: f64,
     pub limits: &'a FitLimits,
@@ -89,27 +89,27 @@ impl<'a> PlaneRows<'a> {
     }
 
     /// What each group says at a pose.
-    fn of_groups(&self, a_from_b: &Similarity, chart: &Chart) -> Vec<NormalEquations> {
+    fn of_groups(&self, a_from_b: &Similarity, parameters: &MotionParameters) -> Vec<NormalEquations> {
         let (groups, factor) = self.weighed(a_from_b);
-        groups.iter().map(|g| scaled(&scaled(&g.rows(chart), g.factor), factor)).collect()
+        groups.iter().map(|g| scaled(&scaled(&g.rows(parameters), g.factor), factor)).collect()
     }
 }
 
 impl Weighed<'_> {
-    fn rows(&self, chart: &Chart) -> NormalEquations {
+    fn rows(&self, parameters: &MotionParameters) -> NormalEquations {
         let mut sums = NormalEquations::default();
         for (m, weight) in &self.rows {
-            sums.add(&chart.row(&m.at, &m.normal), m.residual, *weight);
+            sums.add(&parameters.row(&m.at, &m.normal), m.residual, *weight);
         }
         sums
     }
 
-    fn tilts(&self, a_from_b: &Similarity, chart: &Chart) -> NormalEquations {
+    fn tilts(&self, a_from_b: &Similarity, parameters: &MotionParameters) -> NormalEquations {
         let (axes, variances) = (self.group.axes_in_a(a_from_b), self.group.tilt_variances());
         let mut sums = NormalEquations::default();
         for (m, weight) in &self.rows {
             for (axis, variance) in axes.iter().zip(variances) {
-                sums.add(&chart.row(&m.at, axis), 0.0, weight * variance);
+                sums.add(&parameters.row(&m.at, axis), 0.0, weight * variance);
             }
         }
         sums
@@ -117,7 +117,7 @@ impl Weighed<'_> {
 }
 
 /// What planes say by themselves about a pose that is known well enough to tell their bend.
-pub(in crate::merging) fn settle_planes(planes: &PlaneEvidence, near: &Similarity, limits: &FitLimits) -> OwnFit {
+pub(in crate::merging) fn settle_planes(planes: &SharedPlanes, near: &Similarity, limits: &FitLimits) -> OwnFit {
     settle_near(&mut PlaneRows { planes, bend: 0.0, limits }, near, limits)
 }
 
@@ -130,22 +130,22 @@ fn scaled(sums: &NormalEquations, factor: f64) -> NormalEquations {
 }
 
 impl Rows for PlaneRows<'_> {
-    fn add_rows(&self, a_from_b: &Similarity, chart: &Chart, factor: f64, sums: &mut NormalEquations) {
-        self.of_groups(a_from_b, chart).iter().for_each(|of_group| sums.merge(of_group, factor));
+    fn add_rows(&self, a_from_b: &Similarity, parameters: &MotionParameters, factor: f64, sums: &mut NormalEquations) {
+        self.of_groups(a_from_b, parameters).iter().for_each(|of_group| sums.merge(of_group, factor));
     }
 
-    fn noise(&self, a_from_b: &Similarity, chart: &Chart) -> Option<Matrix7> {
+    fn noise(&self, a_from_b: &Similarity, parameters: &MotionParameters) -> Option<Matrix7> {
         let (groups, factor) = self.weighed(a_from_b);
         let mut sums = NormalEquations::default();
         for group in &groups {
-            sums.merge(&scaled(&scaled(&group.tilts(a_from_b, chart), group.factor), factor), 1.0);
+            sums.merge(&scaled(&scaled(&group.tilts(a_from_b, parameters), group.factor), factor), 1.0);
         }
         Some(sums.full())
     }
 }
 
 impl Source for PlaneRows<'_> {
-    fn chart(&self, a_from_b: &Similarity) -> Chart {
+    fn parameters(&self, a_from_b: &Similarity) -> MotionParameters {
         let (mut sum, mut count) = (Vector3::zeros(), 0.0f64);
         for group in &self.planes.groups {
             for point in &group.points {
@@ -156,7 +156,7 @@ impl Source for PlaneRows<'_> {
                 count += 1.0;
             }
         }
-        Chart::of_similarity(Point3::from(sum / count.max(1.0)), self.planes.radius[0])
+        MotionParameters::of_similarity(Point3::from(sum / count.max(1.0)), self.planes.radius[0])
     }
 
     fn misses(&self, a_from_b: &Similarity) -> Vec<Miss> {
@@ -169,13 +169,13 @@ impl Source for PlaneRows<'_> {
         misses
     }
 
-    fn pieces(&self, a_from_b: &Similarity, chart: &Chart) -> Vec<Piece> {
-        let sums = self.of_groups(a_from_b, chart);
+    fn placed(&self, a_from_b: &Similarity, parameters: &MotionParameters) -> Vec<PlacedEquations> {
+        let sums = self.of_groups(a_from_b, parameters);
         let place = |group: &PlaneGroup| match group.plane_of {
             PlaneOf::A => group.plane.center,
             PlaneOf::B => a_from_b.apply(&group.plane.center),
         };
-        self.planes.groups.iter().zip(sums).map(|(group, sums)| Piece { place: place(group), sums }).collect()
+        self.planes.groups.iter().zip(sums).map(|(group, sums)| PlacedEquations { place: place(group), sums }).collect()
     }
 
     fn median_size(&self) -> f64 {

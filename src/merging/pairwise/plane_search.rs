@@ -11,7 +11,7 @@
 
 use super::fit::{OwnFit, Sources};
 use super::plane_rows::{PlaneRows, settle_planes};
-use super::planes::{PlaneEvidence, PlaneGroup, PlaneOf};
+use super::planes::{PlaneGroup, PlaneOf, SharedPlanes};
 use super::same_place::SamePlace;
 use crate::geometry::{Point3, Similarity};
 use crate::merging::extent::median_point;
@@ -24,7 +24,7 @@ use crate::solvers::{Row, SIMILARITY, Sought, solve_minimal};
 const TRIES: usize = 20;
 
 /// The pose that the planes agree on best, and their answer about it.
-pub(super) fn fit_planes(planes: &PlaneEvidence, limits: &MergeLimits, seed: u64) -> Option<OwnFit> {
+pub(super) fn fit_planes(planes: &SharedPlanes, limits: &MergeLimits, seed: u64) -> Option<OwnFit> {
     let pose = search(planes, limits, seed)?;
     Some(settle_planes(planes, &pose, &limits.fit))
 }
@@ -38,7 +38,7 @@ struct Search<'a> {
     same: SamePlace<'a>,
 }
 
-fn search(planes: &PlaneEvidence, limits: &MergeLimits, seed: u64) -> Option<Similarity> {
+fn search(planes: &SharedPlanes, limits: &MergeLimits, seed: u64) -> Option<Similarity> {
     let search = &limits.search;
     let rows = |bend: f64| PlaneRows { planes, bend, limits: &limits.fit };
     let sides = [PlaneOf::A, PlaneOf::B].map(|of| side(planes, of));
@@ -68,7 +68,7 @@ fn search(planes: &PlaneEvidence, limits: &MergeLimits, seed: u64) -> Option<Sim
 }
 
 /// The groups of one side, where they have enough points for a sample.
-fn side(planes: &PlaneEvidence, of: PlaneOf) -> Vec<&PlaneGroup> {
+fn side(planes: &SharedPlanes, of: PlaneOf) -> Vec<&PlaneGroup> {
     let groups: Vec<&PlaneGroup> = planes.groups.iter().filter(|g| g.plane_of == of).collect();
     if groups.iter().map(|g| g.points.len()).sum::<usize>() < Motion::Similarity.unknowns() {
         Vec::new()
@@ -77,7 +77,7 @@ fn side(planes: &PlaneEvidence, of: PlaneOf) -> Vec<&PlaneGroup> {
     }
 }
 
-fn center_of_b(planes: &PlaneEvidence) -> Point3<f64> {
+fn center_of_b(planes: &SharedPlanes) -> Point3<f64> {
     let in_b = |g: &PlaneGroup| match g.plane_of {
         PlaneOf::A => g.points[0].at,
         PlaneOf::B => g.plane.center,

@@ -41,7 +41,7 @@ pub(in crate::merging) struct PlaneGroup {
 
 /// All planes of two parts, both ways.
 #[derive(Clone, Debug)]
-pub(in crate::merging) struct PlaneEvidence {
+pub(in crate::merging) struct SharedPlanes {
     pub groups: Vec<PlaneGroup>,
     /// Radius of a and of b, each in its own units.
     pub radius: [f64; 2],
@@ -159,27 +159,27 @@ impl PlaneGroup {
     }
 }
 
-impl PlaneEvidence {
+impl SharedPlanes {
     /// Points on planes, both ways.
     pub fn correspondences(&self) -> usize {
         self.groups.iter().map(|g| g.points.len()).sum()
     }
 }
 
-impl PlaneEvidence {
+impl SharedPlanes {
     /// The same planes with the points of other superpixels: what agrees here agrees by chance.
-    pub fn shuffled(&self) -> PlaneEvidence {
+    pub fn shuffled(&self) -> SharedPlanes {
         let mut groups = Vec::with_capacity(self.groups.len());
         for side in [PlaneOf::A, PlaneOf::B] {
             let own: Vec<&PlaneGroup> = self.groups.iter().filter(|g| g.plane_of == side).collect();
             let other = |i: usize| own[(i + own.len().div_ceil(2)) % own.len()].points.clone();
             groups.extend(own.iter().enumerate().map(|(i, g)| PlaneGroup { points: other(i), ..(*g).clone() }));
         }
-        PlaneEvidence { groups, radius: self.radius }
+        SharedPlanes { groups, radius: self.radius }
     }
 
     /// Part b mirrored at its origin.
-    pub fn mirrored(&self) -> PlaneEvidence {
+    pub fn mirrored(&self) -> SharedPlanes {
         let mut mirrored = self.clone();
         for group in &mut mirrored.groups {
             match group.plane_of {

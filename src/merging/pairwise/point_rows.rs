@@ -5,11 +5,11 @@
 //! Weights      Tukey's (Beaton and Tukey 1974); the bend does not average out, so pairs count at most as a fixed number of
 //!              independent ones
 
-use super::rows::{Miss, Piece, Rows, Source};
-use super::track_evidence::PointPair;
+use super::rows::{Miss, PlacedEquations, Rows, Source};
+use super::shared_tracks::PointPair;
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::merging::limits::FitLimits;
-use crate::robust::{Chart, NormalEquations, truncated_quadratic, tukey_weight};
+use crate::robust::{MotionParameters, NormalEquations, truncated_quadratic, tukey_weight};
 
 /// Median of the norm of a whitened residual with three degrees of freedom (square root of the chi-square's 2.366).
 pub(super) const MEDIAN_NORM: f64 = 1.538;
@@ -52,33 +52,39 @@ impl<'a> PointRows<'a> {
     }
 
     /// Adds one pair; the robust weight that it got.
-    fn add_pair(&self, pair: &PointPair, a_from_b: &Similarity, chart: &Chart, sums: &mut NormalEquations) -> f64 {
+    fn add_pair(
+        &self,
+        pair: &PointPair,
+        a_from_b: &Similarity,
+        parameters: &MotionParameters,
+        sums: &mut NormalEquations,
+    ) -> f64 {
         let x = a_from_b.apply(&pair.in_b);
         let whitening = self.whitening(pair, a_from_b);
         let residual = whitening * (x - pair.in_a);
         let weight = tukey_weight(residual.norm_squared(), self.limits.gate_sigmas);
         for k in 0..3 {
-            sums.add(&chart.row(&x, &whitening.row(k).transpose()), residual[k], weight);
+            sums.add(&parameters.row(&x, &whitening.row(k).transpose()), residual[k], weight);
         }
         weight
     }
 }
 
 impl Rows for PointRows<'_> {
-    fn add_rows(&self, a_from_b: &Similarity, chart: &Chart, factor: f64, sums: &mut NormalEquations) {
+    fn add_rows(&self, a_from_b: &Similarity, parameters: &MotionParameters, factor: f64, sums: &mut NormalEquations) {
         let mut own = NormalEquations::default();
         let mut weights = 0.0;
         for pair in self.pairs {
-            weights += self.add_pair(pair, a_from_b, chart, &mut own);
+            weights += self.add_pair(pair, a_from_b, parameters, &mut own);
         }
         sums.merge(&own, factor * (self.limits.independent / f64::max(weights, 1.0)).min(1.0));
     }
 }
 
 impl Source for PointRows<'_> {
-    fn chart(&self, a_from_b: &Similarity) -> Chart {
+    fn parameters(&self, a_from_b: &Similarity) -> MotionParameters {
         let sum = self.pairs.iter().map(|p| a_from_b.apply(&p.in_b).coords).sum::<Vector3<f64>>();
-        Chart::of_similarity(Point3::from(sum / self.pairs.len().max(1) as f64), self.radius)
+        MotionParameters::of_similarity(Point3::from(sum / self.pairs.len().max(1) as f64), self.radius)
     }
 
     fn misses(&self, a_from_b: &Similarity) -> Vec<Miss> {
@@ -90,15 +96,15 @@ impl Source for PointRows<'_> {
         self.pairs.iter().map(miss).collect()
     }
 
-    fn pieces(&self, a_from_b: &Similarity, chart: &Chart) -> Vec<Piece> {
+    fn placed(&self, a_from_b: &Similarity, parameters: &MotionParameters) -> Vec<PlacedEquations> {
         let gate_sq = self.limits.gate_sigmas.powi(2);
         let inliers = self.misses(a_from_b).iter().filter(|m| m.whitened_sq < gate_sq).count();
         let factor = f64::max(inliers as f64 / self.limits.independent, 1.0).recip();
         let piece = |pair: &PointPair| {
             let (mut own, mut sums) = (NormalEquations::default(), NormalEquations::default());
-            self.add_pair(pair, a_from_b, chart, &mut own);
+            self.add_pair(pair, a_from_b, parameters, &mut own);
             sums.merge(&own, factor);
-            Piece { place: pair.in_a, sums }
+            PlacedEquations { place: pair.in_a, sums }
         };
         self.pairs.iter().map(piece).collect()
     }

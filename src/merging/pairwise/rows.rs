@@ -1,15 +1,15 @@
 //! What the sources of a pose have in common: rows of normal equations, and misses.
 
 use crate::geometry::{Point3, Similarity};
-use crate::robust::{Chart, Matrix7, NormalEquations};
+use crate::robust::{Matrix7, MotionParameters, NormalEquations};
 
 /// Observations that hold the similarity `a_from_b`.
 pub(super) trait Rows {
     /// Adds what they say at a pose, times a factor.
-    fn add_rows(&self, a_from_b: &Similarity, chart: &Chart, factor: f64, sums: &mut NormalEquations);
+    fn add_rows(&self, a_from_b: &Similarity, parameters: &MotionParameters, factor: f64, sums: &mut NormalEquations);
 
     /// The part of that information which is only noise of the rows themselves, where they are measured and not given.
-    fn noise(&self, _a_from_b: &Similarity, _chart: &Chart) -> Option<Matrix7> {
+    fn noise(&self, _a_from_b: &Similarity, _parameters: &MotionParameters) -> Option<Matrix7> {
         None
     }
 }
@@ -18,13 +18,13 @@ pub(super) trait Rows {
 /// away, whose size is that which makes the median whitened residual what theory says.
 pub(super) trait Source: Rows {
     /// Middle and size of what is observed, as it lies in a.
-    fn chart(&self, a_from_b: &Similarity) -> Chart;
+    fn parameters(&self, a_from_b: &Similarity) -> MotionParameters;
 
     /// Every observation against a pose.
     fn misses(&self, a_from_b: &Similarity) -> Vec<Miss>;
 
     /// What each piece of the scene says at a pose, weighted as among all.
-    fn pieces(&self, a_from_b: &Similarity, chart: &Chart) -> Vec<Piece>;
+    fn placed(&self, a_from_b: &Similarity, parameters: &MotionParameters) -> Vec<PlacedEquations>;
 
     /// Median size of a whitened residual.
     fn median_size(&self) -> f64;
@@ -45,7 +45,7 @@ pub(super) struct Miss {
 }
 
 /// Observations of one place.
-pub(super) struct Piece {
+pub(super) struct PlacedEquations {
     /// In a.
     pub place: Point3<f64>,
     pub sums: NormalEquations,

@@ -2,13 +2,13 @@
 //!
 //! Question     which planes does one part have, and which points of the other part lie on them?
 //! Input        the superpixels of both parts, for the photographs that both have
-//! Output       [`PlaneEvidence`]: for each superpixel, both ways, a plane with its uncertainty and the other part's points
+//! Output       [`SharedPlanes`]: for each superpixel, both ways, a plane with its uncertainty and the other part's points
 //! Method       [`PlaneGroup::of`] for each superpixel that both parts have points in
 //! Assumptions  a superpixel shows one piece of surface
 //! Fails when   the superpixels hold fewer than a handful of points (sparse clouds, small superpixels)
 //! Source       Ramalingam, Taguchi, Marks and Tuzel (ECCV 2010), section 5
 
-use super::planes::{PlaneEvidence, PlaneGroup, PlaneOf};
+use super::planes::{PlaneGroup, PlaneOf, SharedPlanes};
 use crate::merging::limits::MergeLimits;
 use crate::merging::point_covariance::KnownPoint;
 use crate::merging::prepared::PreparedPart;
@@ -20,7 +20,7 @@ pub(super) fn superpixel_planes(
     [a, b]: [&PreparedPart<'_>; 2],
     photos: &[SharedPhoto],
     limits: &MergeLimits,
-) -> Option<PlaneEvidence> {
+) -> Option<SharedPlanes> {
     let mut groups = Vec::new();
     for photo in photos {
         for (label, in_a) in a.superpixels_of(photo.in_a) {
@@ -33,7 +33,7 @@ pub(super) fn superpixel_planes(
             groups.extend(forth.into_iter().chain(back).map(|g| PlaneGroup { share, ..g }));
         }
     }
-    (!groups.is_empty()).then_some(PlaneEvidence { groups, radius: [a.extent.radius, b.extent.radius] })
+    (!groups.is_empty()).then_some(SharedPlanes { groups, radius: [a.extent.radius, b.extent.radius] })
 }
 
 fn points(part: &PreparedPart<'_>, indices: &[PointIndex]) -> Vec<KnownPoint> {

@@ -1,6 +1,6 @@
 //! Two parts of a yard with walls, floor and roofs, for tests: what superpixels say of it.
 
-use super::planes::{PlaneEvidence, PlaneGroup, PlaneOf};
+use super::planes::{PlaneGroup, PlaneOf, SharedPlanes};
 use crate::geometry::{Camera, CameraModel, Matrix3, Point3, Rotation3, Similarity, Vector3};
 use crate::merging::limits::MergeLimits;
 use crate::merging::part::Part;
@@ -48,7 +48,7 @@ fn spots(k: usize, part: usize, noise: f64) -> Vec<Point3<f64>> {
 }
 
 /// `noise`: one sigma across the planes, a's units; `distort`: what part b has done to the world.
-pub(in crate::merging) fn scene(noise: f64, distort: impl Fn(&Point3<f64>) -> Point3<f64>) -> PlaneEvidence {
+pub(in crate::merging) fn scene(noise: f64, distort: impl Fn(&Point3<f64>) -> Point3<f64>) -> SharedPlanes {
     let known = |at: Point3<f64>, sigma: f64| KnownPoint { at, covariance: Matrix3::identity() * (sigma * sigma) };
     let b_from_a = truth().inverse();
     let (mut groups, limits) = (Vec::new(), MergeLimits::default());
@@ -61,7 +61,7 @@ pub(in crate::merging) fn scene(noise: f64, distort: impl Fn(&Point3<f64>) -> Po
         let back = PlaneGroup::of(PlaneOf::B, &in_b, &in_a, &b_from_a.apply(&distort(&eye)), &limits).unwrap();
         groups.extend([forth, back].map(|g| PlaneGroup { share: 0.5, ..g }));
     }
-    PlaneEvidence { groups, radius: [RADIUS, RADIUS * b_from_a.scale] }
+    SharedPlanes { groups, radius: [RADIUS, RADIUS * b_from_a.scale] }
 }
 
 /// Corner, two edges and the side that was seen: a floor and two walls, which both parts have, and a roof.

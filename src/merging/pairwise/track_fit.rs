@@ -8,7 +8,7 @@ use super::camera_rows::CameraRows;
 use super::fit::{Fit, Sources, Term, settle};
 use super::point_rows::PointRows;
 use super::same_place::SamePlace;
-use super::track_evidence::{CameraPair, PointPair, TrackEvidence};
+use super::shared_tracks::{CameraPair, PointPair, SharedTracks};
 use super::umeyama::umeyama;
 use crate::geometry::{Point3, Similarity};
 use crate::merging::extent::median_point;
@@ -25,32 +25,32 @@ pub(super) struct TrackFit {
 
 impl TrackFit {
     /// The pairs that were fitted, as they bend.
-    pub fn pairs<'a>(&self, evidence: &'a TrackEvidence, limits: &'a FitLimits) -> PointRows<'a> {
-        PointRows { bend: self.fit.bend, ..PointRows::new(&evidence.pairs, evidence.radius_a, limits) }
+    pub fn pairs<'a>(&self, tracks: &'a SharedTracks, limits: &'a FitLimits) -> PointRows<'a> {
+        PointRows { bend: self.fit.bend, ..PointRows::new(&tracks.pairs, tracks.radius_a, limits) }
     }
 
     /// The cameras that were fitted.
-    pub fn cameras<'a>(&self, evidence: &'a TrackEvidence, limits: &'a FitLimits) -> CameraRows<'a> {
-        cameras_among(evidence, &self.cameras_used, self.fit.bend, limits)
+    pub fn cameras<'a>(&self, tracks: &'a SharedTracks, limits: &'a FitLimits) -> CameraRows<'a> {
+        cameras_among(tracks, &self.cameras_used, self.fit.bend, limits)
     }
 }
 
 /// Pairs alone first, then the cameras that agree with them.
-pub(super) fn fit_tracks(evidence: &TrackEvidence, limits: &MergeLimits, seed: u64) -> Option<TrackFit> {
-    let mut pairs = PointRows::new(&evidence.pairs, evidence.radius_a, &limits.fit);
-    let start = search(&pairs, &evidence.cameras, limits, seed)?;
+pub(super) fn fit_tracks(tracks: &SharedTracks, limits: &MergeLimits, seed: u64) -> Option<TrackFit> {
+    let mut pairs = PointRows::new(&tracks.pairs, tracks.radius_a, &limits.fit);
+    let start = search(&pairs, &tracks.cameras, limits, seed)?;
     let pose = settle(&mut pairs, &start, &limits.fit);
-    let all = cameras_among(evidence, &vec![true; evidence.cameras.len()], pairs.bend, &limits.fit);
+    let all = cameras_among(tracks, &vec![true; tracks.cameras.len()], pairs.bend, &limits.fit);
     let cameras_used = all.agree(&pose);
-    let cameras = cameras_among(evidence, &cameras_used, pairs.bend, &limits.fit);
+    let cameras = cameras_among(tracks, &cameras_used, pairs.bend, &limits.fit);
     let sources = Sources { lead: &pairs, others: &[Term { rows: &cameras, factor: 1.0 }] };
     let fit = sources.finish(sources.refine(&pose), &limits.fit);
     Some(TrackFit { fit, cameras_used })
 }
 
-fn cameras_among<'a>(evidence: &'a TrackEvidence, used: &[bool], bend: f64, limits: &'a FitLimits) -> CameraRows<'a> {
-    let cameras = evidence.cameras.iter().zip(used).filter(|(_, used)| **used).map(|(camera, _)| camera).collect();
-    CameraRows { cameras, bend: bend * evidence.radius_a, limits: &limits.cameras }
+fn cameras_among<'a>(tracks: &'a SharedTracks, used: &[bool], bend: f64, limits: &'a FitLimits) -> CameraRows<'a> {
+    let cameras = tracks.cameras.iter().zip(used).filter(|(_, used)| **used).map(|(camera, _)| camera).collect();
+    CameraRows { cameras, bend: bend * tracks.radius_a, limits: &limits.cameras }
 }
 
 /// How much of the pairs the best similarity explains; for comparing with a mirrored part.
@@ -146,7 +146,7 @@ mod tests {
             let wrong = pair(k * 7 + 100).in_a;
             pairs.push(PointPair { in_a: wrong, ..pair(k + 200) });
         }
-        let evidence = TrackEvidence {
+        let tracks = SharedTracks {
             photos: Vec::new(),
             pairs,
             cameras: Vec::new(),
@@ -155,7 +155,7 @@ mod tests {
             radius_a: 8.0,
             own_error: [0.0; 2],
         };
-        let TrackFit { fit, .. } = fit_tracks(&evidence, &MergeLimits::default(), 1).unwrap();
+        let TrackFit { fit, .. } = fit_tracks(&tracks, &MergeLimits::default(), 1).unwrap();
         let p = Point3::new(1.0, 2.0, 3.0);
         assert!((fit.a_from_b.apply(&p) - truth().apply(&p)).norm() < 0.02, "{fit:?}");
     }

@@ -2,7 +2,7 @@
 //!
 //! Question     which points of one part lie on which planes of the other, once it is known roughly how the parts stand?
 //! Input        the surfaces of both parts and the similarity between them
-//! Output       [`PlaneEvidence`], both ways: planar patches of each part with the other's points on them
+//! Output       [`SharedPlanes`], both ways: planar patches of each part with the other's points on them
 //! Method       each part's cloud is cut into planar patches. A point of one part's patch goes to the patch of the other part whose
 //!              point is nearest to it, if that is not further than the cloud's spacing and the bend explain and both
 //!              patches face the same way. (Superpixels tell the same for shared photographs alone, but need no pose.)
@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use super::planes::{PlaneEvidence, PlaneGroup, PlaneOf};
+use super::planes::{PlaneGroup, PlaneOf, SharedPlanes};
 use crate::geometry::Similarity;
 use crate::merging::limits::MergeLimits;
 use crate::merging::point_covariance::KnownPoint;
@@ -25,13 +25,13 @@ pub(in crate::merging) fn whole_planes(
     a_from_b: &Similarity,
     bend: f64,
     limits: &MergeLimits,
-) -> Option<PlaneEvidence> {
+) -> Option<SharedPlanes> {
     let (in_a, in_b) = (a.surfaces()?, b.surfaces()?);
     let forth = Laid { own: in_a, other: in_b, own_from_other: *a_from_b, bend };
     let back = Laid { own: in_b, other: in_a, own_from_other: a_from_b.inverse(), bend: bend / a_from_b.scale };
     let mut groups = forth.groups(PlaneOf::A, limits);
     groups.extend(back.groups(PlaneOf::B, limits));
-    (!groups.is_empty()).then_some(PlaneEvidence { groups, radius: [a.extent.radius, b.extent.radius] })
+    (!groups.is_empty()).then_some(SharedPlanes { groups, radius: [a.extent.radius, b.extent.radius] })
 }
 
 /// One part's surfaces laid over the other's; the bend in the frame of `own`.
@@ -83,7 +83,7 @@ mod tests {
     use crate::geometry::Vector3;
     use crate::merging::part::Part;
 
-    fn found(parts: [&Part; 2], a_from_b: &Similarity) -> Option<PlaneEvidence> {
+    fn found(parts: [&Part; 2], a_from_b: &Similarity) -> Option<SharedPlanes> {
         let limits = MergeLimits::default();
         let [a, b] = parts.map(|part| PreparedPart::of(part, &limits));
         whole_planes([&a, &b], a_from_b, 0.001, &limits)

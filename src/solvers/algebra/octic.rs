@@ -213,8 +213,8 @@ mod tests {
 
     #[test]
     fn finds_every_root_of_octics_with_known_roots() {
-        let mut chance = crate::solvers::scene::Chance::new(7);
-        let mut uniform = || chance.uniform();
+        let mut random = crate::solvers::scene::Random::stream(7, 0);
+        let mut uniform = || random.unit();
         for case in 0..20_000 {
             let number = [0, 2, 4, 6, 8][case % 5];
             let known: Vec<[f64; 2]> =

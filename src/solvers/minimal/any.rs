@@ -13,7 +13,7 @@
 //!             3. Substitution gives s and X.
 //! Solutions   8 at most, 3.03 on average for six planes; similarities: those with s > 0, 2.72 on average for seven planes
 //! Degenerate  normals that do not span space, planes through one point (similarity), dependent quadrics: no pose.
-//!             A curve of solutions: whatever is returned satisfies the rows but is one of many; thorough/degeneracy.rs tells
+//!             A curve of solutions: whatever is returned satisfies the rows but is one of many; general/degeneracy.rs tells
 //! Scaling     equivariant in both frames; offsets should be taken about a near origin
 //! Source      Kukelova, Heller, Fitzgibbon, "Efficient intersection of three quadrics and applications in computer
 //!             vision" (CVPR 2016); mathematics.md sections 3, 6, 7

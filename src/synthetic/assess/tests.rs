@@ -1,5 +1,5 @@
 use super::*;
-use crate::solvers::scene::Chance;
+use crate::solvers::scene::Random;
 use crate::synthetic::sfm_from_city;
 use crate::verdict::{Certainty, Freedom, FreedomKind, FreedomUnit, ModelErrors, SearchSummary, Support};
 
@@ -26,9 +26,9 @@ fn alignment(motion: &Vector7, sigmas: &[f64; 7], determined: usize) -> (Alignme
         determined: k < determined,
         given: false,
     };
-    let mut chance = Chance::new(3);
+    let mut random = Random::stream(3, 0);
     let points = (0..200)
-        .map(|_| truth.inverse().apply(&(center + 0.3 * chance.in_cube().component_mul(&Vector3::new(1.0, 1.0, 0.2)))))
+        .map(|_| truth.inverse().apply(&(center + 0.3 * random.in_cube().component_mul(&Vector3::new(1.0, 1.0, 0.2)))))
         .collect();
     let alignment = Alignment {
         verdict: Verdict::Aligned,
@@ -54,11 +54,11 @@ fn alignment(motion: &Vector7, sigmas: &[f64; 7], determined: usize) -> (Alignme
 #[test]
 fn errors_as_stated_lie_in_the_band_and_their_chi_square_has_its_median() {
     let sigmas = [0.02, 0.03, 0.05, 0.04, 0.06, 0.08, 0.03];
-    let mut chance = Chance::new(8);
+    let mut random = Random::stream(8, 0);
     let mut normalised = Vec::new();
     let mut inside = 0;
     for _ in 0..400 {
-        let motion = Vector7::from_fn(|k, _| sigmas[k] * chance.normal());
+        let motion = Vector7::from_fn(|k, _| sigmas[k] * random.normal());
         let (found, truth, points) = alignment(&motion, &sigmas, 7);
         let assessed = Assessment::new(&found, Some(&truth), &points);
         inside += usize::from(assessed.band().is_eq());

@@ -8,9 +8,9 @@ fn the_information_is_that_of_least_squares_with_the_dense_covariance() {
     let made = Made::four_houses();
     let scene = made.scene(&Offset::default(), Motion::Similarity);
     let (refiner, pose) = (PoseRefiner::new(&scene), made.truth(&scene));
-    let chart = refiner.assess(&[], &pose, 0.0).chart;
+    let parameters = refiner.assess(&[], &pose, 0.0).parameters;
     let observed = observations(&refiner, &pose, scene.gate_unit_m);
-    let system = System::converged(&refiner, &pose, &chart, &observed);
+    let system = System::converged(&refiner, &pose, &parameters, &observed);
     let (n, count) = (system.common, observed.cells.len());
     let mut covariance = DMatrix::zeros(count, count);
     let known = system.known();

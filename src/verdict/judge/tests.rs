@@ -1,7 +1,7 @@
 use super::*;
 use crate::geometry::{Point3, Vector3};
 use crate::limits::Limits;
-use crate::robust::{Chart, Matrix7, Motion};
+use crate::robust::{Matrix7, Motion, MotionParameters};
 
 fn rival(shift: [f64; 3], bits: f64) -> Rival {
     let city_from_sfm = Similarity { translation: Vector3::from(shift), ..Similarity::identity() };
@@ -15,7 +15,7 @@ fn hold(open: Option<usize>) -> PoseInformation {
         information[(k, k)] = 0.0;
     }
     PoseInformation {
-        chart: Chart::of_similarity(Point3::origin(), 20.0),
+        parameters: MotionParameters::of_similarity(Point3::origin(), 20.0),
         information: information * 2.0,
         without: vec![information, information],
         prior: Matrix7::identity() * 0.01,
@@ -35,7 +35,7 @@ fn decision(rivals: &[Rival], hold: &PoseInformation) -> Decision {
 fn with_given_scale(log_off: f64, log_sigma: f64) -> PoseInformation {
     let given_scale = GivenScale { given: 6.85, of_data: 6.85 * log_off.exp(), log_sigma, bits: 30.0 };
     let mut hold = hold(None);
-    hold.chart.motion = Motion::Rigid;
+    hold.parameters.motion = Motion::Rigid;
     PoseInformation { given_scale: Some(given_scale), ..hold }
 }
 
@@ -196,7 +196,7 @@ proptest! {
         };
         let (information, prior) = (of(&entries[..49]) * 100.0, of(&entries[49..]));
         let hold = PoseInformation {
-            chart: Chart::of_similarity(Point3::origin(), radius),
+            parameters: MotionParameters::of_similarity(Point3::origin(), radius),
             information,
             without: vec![information],
             prior,

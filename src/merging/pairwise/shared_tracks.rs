@@ -37,7 +37,7 @@ pub(super) struct CameraPair {
 
 /// All of it.
 #[derive(Clone, Debug)]
-pub(super) struct TrackEvidence {
+pub(super) struct SharedTracks {
     pub photos: Vec<SharedPhoto>,
     pub pairs: Vec<PointPair>,
     pub cameras: Vec<CameraPair>,
@@ -62,7 +62,7 @@ pub(super) fn shared_tracks(
     [a, b]: [&PreparedPart<'_>; 2],
     photos: Vec<SharedPhoto>,
     limits: &MergeLimits,
-) -> TrackEvidence {
+) -> SharedTracks {
     let sfms = [a.sfm(), b.sfm()];
     let (mut couples, mut cameras, mut chance) = (BTreeSet::new(), Vec::new(), 0.0);
     for photo in &photos {
@@ -79,7 +79,7 @@ pub(super) fn shared_tracks(
     let keypoints = |sfm: &Reconstruction, image_of: fn(&SharedPhoto) -> ImageIndex| {
         photos.iter().flat_map(|p| &sfm.images[image_of(p).0 as usize].observations).filter(|o| has_point(o)).count()
     };
-    TrackEvidence {
+    SharedTracks {
         pairs: couples.into_iter().map(pair).collect(),
         cameras,
         chance,

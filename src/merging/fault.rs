@@ -1,8 +1,9 @@
-//! Why two parts are not joined, with its figures; its words are the report's.
+//! Why two parts are not joined, and why an edge between them is not used, with figures; the words are the report's.
 
 /// What speaks against a pair of parts. Shares are of the radius, and told as per cent of the extent, which is twice as long.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub(in crate::merging) enum PairFault {
+#[non_exhaustive]
+pub enum PairFault {
     #[error("{part} contradicts itself: its points miss its own keypoints by {:.1} % of the photograph's width", 100.0 * .error_share)]
     Unsound { part: String, error_share: f64 },
     #[error(
@@ -59,4 +60,27 @@ pub(in crate::merging) enum PairFault {
     SourcesContradict { share: f64, own_share: f64, apart: String },
     #[error("where the city has them, the surfaces that both see lie {:.2} % of the extent apart", 50.0 * .off)]
     SurfacesApart { off: f64 },
+}
+
+/// Why an edge of the network is not used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EdgeFault {
+    /// The two parts do not belong together, or how they stand to each other is not fixed.
+    #[error(transparent)]
+    Pair(#[from] PairFault),
+    /// The other edges of its cycles agree with each other, but not with this one. The share is of the radius.
+    #[error("puts {names} {:.1} % of the extent ({sigmas:.0} sigmas) off from where the other edges put them", 50.0 * .share)]
+    Contradicted { names: String, share: f64, sigmas: f64 },
+    /// A cycle does not close, and any of so many edges may be the wrong one.
+    #[error(
+        "a cycle does not close: the edges round {names} disagree by {:.1} % of the extent ({sigmas:.0} sigmas), and any of {choices} \
+         may be the wrong one; a further shared photograph would tell",
+        50.0 * .share
+    )]
+    OpenCycle { names: String, share: f64, sigmas: f64, choices: usize },
+    #[error("its parts belong to another group than the one that was placed")]
+    OtherGroup,
+    #[error("the city does not fix both parts")]
+    NotFixedByCity,
 }

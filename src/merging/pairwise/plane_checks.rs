@@ -1,33 +1,33 @@
-//! What points on planes of superpixels answer to the judge.
+//! What points on planes of superpixels say on whether two parts belong together.
 
 use nalgebra::{SMatrix, SVector};
 
-use super::fault::PairFault;
+use super::decision::{PairChecks, PairDecision, Stretch, Words, mirrored};
 use super::fit::{Fit, OwnFit};
-use super::judge::{PairDecision, Stretch, Testimony, Words, mirrored};
 use super::on_planes::{share_on_planes, too_few};
 use super::plane_search::fit_planes;
-use super::planes::{Measured, PlaneEvidence};
+use super::planes::{Measured, SharedPlanes};
 use crate::geometry::{Matrix3, Vector3};
+use crate::merging::fault::PairFault;
 use crate::merging::limits::MergeLimits;
 use crate::robust::quantile;
 
-pub(super) struct PlaneTestimony<'a> {
-    pub planes: Option<&'a PlaneEvidence>,
+pub(super) struct PlaneChecks<'a> {
+    pub planes: Option<&'a SharedPlanes>,
     pub found: Option<&'a OwnFit>,
     pub limits: &'a MergeLimits,
     pub seed: u64,
 }
 
-impl Testimony for PlaneTestimony<'_> {
+impl PairChecks for PlaneChecks<'_> {
     fn words(&self) -> Words {
         Words { holds: "planes of the superpixels", counted: "points on planes" }
     }
 
-    fn lacking(&self) -> Option<PairDecision> {
+    fn shortage(&self) -> Option<PairDecision> {
         match self.planes {
             None => Some(PairDecision::Open(PairFault::NoSuperpixels)),
-            Some(planes) => too_few(planes, &self.limits.judge).map(PairDecision::Open),
+            Some(planes) => too_few(planes, &self.limits.decision).map(PairDecision::Open),
         }
     }
 
@@ -36,11 +36,11 @@ impl Testimony for PlaneTestimony<'_> {
     }
 
     /// Points lie on their planes, better than in the mirror and better than chance.
-    fn refused(&self, fit: &Fit) -> Option<PairDecision> {
-        let (planes, limits) = (self.planes?, &self.limits.judge);
+    fn disagreement(&self, fit: &Fit) -> Option<PairDecision> {
+        let (planes, limits) = (self.planes?, &self.limits.decision);
         let share = share_on_planes(planes, &fit.a_from_b, self.limits.sources.on_plane);
-        if let Some(opinion) = mirrored(self.best_share(&planes.mirrored()) / share, limits) {
-            return Some(opinion);
+        if let Some(decision) = mirrored(self.best_share(&planes.mirrored()) / share, limits) {
+            return Some(decision);
         }
         let by_chance = self.best_share(&planes.shuffled());
         let is_chance = share < limits.agreeing_share || share < limits.chance_factor * by_chance;
@@ -49,7 +49,7 @@ impl Testimony for PlaneTestimony<'_> {
 
     /// The affine map x + M y + t, y = (x - c) / rho, that lays the points best on their planes.
     fn stretch(&self, fit: &Fit) -> Option<Stretch> {
-        let (planes, limits) = (self.planes?, &self.limits.judge);
+        let (planes, limits) = (self.planes?, &self.limits.decision);
         let measured = planes.groups.iter().flat_map(|g| {
             g.points.iter().map(|p| g.measured(p, &fit.a_from_b, 0.0, planes.radius)).filter(|m| !m.is_beside)
         });
@@ -76,9 +76,9 @@ impl Testimony for PlaneTestimony<'_> {
     }
 }
 
-impl PlaneTestimony<'_> {
+impl PlaneChecks<'_> {
     /// Share of the points that the best similarity lays on their planes.
-    fn best_share(&self, planes: &PlaneEvidence) -> f64 {
+    fn best_share(&self, planes: &SharedPlanes) -> f64 {
         let found = fit_planes(planes, self.limits, self.seed);
         found.map_or(0.0, |found| share_on_planes(planes, &found.fit.a_from_b, self.limits.sources.on_plane))
     }
@@ -95,32 +95,32 @@ fn affine_row(m: &Measured, center: &Vector3<f64>, radius: f64) -> SVector<f64, 
 
 #[cfg(test)]
 mod tests {
-    use super::super::judge::stretched;
+    use super::super::decision::stretched;
     use super::super::test_scene::scene;
     use super::*;
     use crate::geometry::Point3;
 
-    fn opinion(planes: &PlaneEvidence) -> Option<PairDecision> {
+    fn decision(planes: &SharedPlanes) -> Option<PairDecision> {
         let limits = MergeLimits::default();
         let found = fit_planes(planes, &limits, 5).unwrap();
-        let testimony = PlaneTestimony { planes: Some(planes), found: Some(&found), limits: &limits, seed: 5 };
-        testimony.refused(&found.fit).or_else(|| stretched(&testimony.stretch(&found.fit)?, &limits.judge))
+        let checks = PlaneChecks { planes: Some(planes), found: Some(&found), limits: &limits, seed: 5 };
+        checks.disagreement(&found.fit).or_else(|| stretched(&checks.stretch(&found.fit)?, &limits.decision))
     }
 
     #[test]
     fn a_part_of_the_same_place_is_taken() {
-        assert_eq!(opinion(&scene(0.003, |x| *x)), None);
+        assert_eq!(decision(&scene(0.003, |x| *x)), None);
     }
 
     #[test]
     fn a_mirrored_part_is_refused() {
-        let told = opinion(&scene(0.003, |x| Point3::new(-x.x, x.y, x.z)));
+        let told = decision(&scene(0.003, |x| Point3::new(-x.x, x.y, x.z)));
         assert!(matches!(&told, Some(PairDecision::Rejected(PairFault::Mirrored))), "{told:?}");
     }
 
     #[test]
     fn a_stretched_part_is_refused() {
-        let told = opinion(&scene(0.003, |x| Point3::new(x.x, x.y, 1.12 * x.z)));
+        let told = decision(&scene(0.003, |x| Point3::new(x.x, x.y, 1.12 * x.z)));
         assert!(
             matches!(&told, Some(PairDecision::Rejected(PairFault::Stretched { ratio })) if (1.06..1.2).contains(ratio)),
             "{told:?}"
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn superpixels_of_another_photograph_are_refused() {
-        let told = opinion(&scene(0.003, |x| *x).shuffled());
+        let told = decision(&scene(0.003, |x| *x).shuffled());
         assert!(matches!(&told, Some(PairDecision::Rejected(PairFault::FewPointsOnPlanes { .. }))), "{told:?}");
     }
 }

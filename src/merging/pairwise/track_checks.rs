@@ -1,30 +1,30 @@
-//! What point pairs answer to the judge.
+//! What point pairs say on whether two parts belong together.
 
-use super::fault::PairFault;
+use super::decision::{PairChecks, PairDecision, Stretch, Words, mirrored};
 use super::fit::Fit;
-use super::judge::{PairDecision, Stretch, Testimony, Words, mirrored};
 use super::point_rows::PointRows;
-use super::track_evidence::{PointPair, TrackEvidence};
+use super::shared_tracks::{PointPair, SharedTracks};
 use super::track_fit::consensus;
 use crate::geometry::{Matrix3, Point3, Vector3};
+use crate::merging::fault::PairFault;
 use crate::merging::limits::MergeLimits;
 use crate::robust::median;
 
-pub(super) struct TrackTestimony<'a> {
-    pub evidence: &'a TrackEvidence,
+pub(super) struct TrackChecks<'a> {
+    pub tracks: &'a SharedTracks,
     pub fit: Option<&'a Fit>,
     pub limits: &'a MergeLimits,
     pub seed: u64,
 }
 
-impl Testimony for TrackTestimony<'_> {
+impl PairChecks for TrackChecks<'_> {
     fn words(&self) -> Words {
         Words { holds: "point pairs", counted: "point pairs" }
     }
 
-    fn lacking(&self) -> Option<PairDecision> {
-        let limits = &self.limits.judge;
-        let TrackEvidence { chance, fewer_keypoints, ref pairs, ref photos, .. } = *self.evidence;
+    fn shortage(&self) -> Option<PairDecision> {
+        let limits = &self.limits.decision;
+        let SharedTracks { chance, fewer_keypoints, ref pairs, ref photos, .. } = *self.tracks;
         let (pairs, photos) = (pairs.len(), photos.len());
         let needed = (limits.chance_factor * chance).max(chance + limits.chance_sigmas * chance.sqrt());
         let is_chance = pairs as f64 <= needed || pairs < limits.fewest_pairs;
@@ -33,12 +33,12 @@ impl Testimony for TrackTestimony<'_> {
     }
 
     fn fit(&self) -> Result<&Fit, PairFault> {
-        self.fit.ok_or(PairFault::NoSimilarityOfPairs { pairs: self.evidence.pairs.len() })
+        self.fit.ok_or(PairFault::NoSimilarityOfPairs { pairs: self.tracks.pairs.len() })
     }
 
-    fn refused(&self, fit: &Fit) -> Option<PairDecision> {
-        let limits = &self.limits.judge;
-        let (pairs, inliers) = (self.evidence.pairs.len(), fit.inlier_count());
+    fn disagreement(&self, fit: &Fit) -> Option<PairDecision> {
+        let limits = &self.limits.decision;
+        let (pairs, inliers) = (self.tracks.pairs.len(), fit.inlier_count());
         if (inliers as f64) < limits.agreeing_share * pairs as f64 || inliers < limits.fewest_pairs {
             return Some(PairDecision::Rejected(PairFault::FewPairsAgree { inliers, pairs }));
         }
@@ -52,7 +52,7 @@ impl Testimony for TrackTestimony<'_> {
     /// held at that of the similarity.
     fn stretch(&self, fit: &Fit) -> Option<Stretch> {
         let inliers: Vec<&PointPair> =
-            self.evidence.pairs.iter().zip(&fit.inliers).filter(|(_, i)| **i).map(|(p, _)| p).collect();
+            self.tracks.pairs.iter().zip(&fit.inliers).filter(|(_, i)| **i).map(|(p, _)| p).collect();
         let count = inliers.len() as f64;
         let moved: Vec<Vector3<f64>> = inliers.iter().map(|p| fit.a_from_b.apply(&p.in_b).coords).collect();
         let mean_x = moved.iter().sum::<Vector3<f64>>() / count;
@@ -63,7 +63,7 @@ impl Testimony for TrackTestimony<'_> {
             xx += dx * dx.transpose();
             yx += dy * dx.transpose();
         }
-        let hold = xx.trace() * self.limits.judge.stretch_hold * Matrix3::identity();
+        let hold = xx.trace() * self.limits.decision.stretch_hold * Matrix3::identity();
         let affine = (yx + hold) * (xx + hold).try_inverse()?;
         let off = |(x, p): (&Vector3<f64>, &&PointPair)| (affine * (x - mean_x) - (p.in_a.coords - mean_y)).norm();
         let mut by_affine: Vec<f64> = moved.iter().zip(&inliers).map(off).collect();
@@ -74,11 +74,11 @@ impl Testimony for TrackTestimony<'_> {
     }
 }
 
-impl TrackTestimony<'_> {
+impl TrackChecks<'_> {
     /// How many times more of the pairs a similarity explains where part b is mirrored.
     fn mirror_gain(&self, fit: &Fit) -> f64 {
-        let pairs = &self.evidence.pairs;
-        let rows = PointRows { bend: fit.bend, ..PointRows::new(pairs, self.evidence.radius_a, &self.limits.fit) };
+        let pairs = &self.tracks.pairs;
+        let rows = PointRows { bend: fit.bend, ..PointRows::new(pairs, self.tracks.radius_a, &self.limits.fit) };
         let in_the_mirror: Vec<PointPair> =
             pairs.iter().map(|p| PointPair { in_b: Point3::from(-p.in_b.coords), ..p.clone() }).collect();
         consensus(&PointRows { pairs: &in_the_mirror, ..rows }, self.limits, self.seed) / rows.votes(&fit.a_from_b)

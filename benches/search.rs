@@ -16,9 +16,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 const POSES: usize = 1000;
 
 fn bench(criterion: &mut Criterion) {
-    let town = Block::town(4, 4, 3).with_ground(true);
+    let town = Block::town(4, 4, 3).with_ground();
     let seen = CloudOptions { points_per_roof: 100, seed: 5, ..CloudOptions::default() };
-    let survey = Block::new(town.houses[..12].to_vec()).with_ground(true).cloud(&seen);
+    let survey = Block::new(town.houses[..12].to_vec()).with_ground().cloud(&seen);
     let city = PreparedCity::new(town.city().expect("a town of houses is a city"));
     let limits = Limits::default();
     let patches = patches(&survey.sfm, None, &limits.patches);

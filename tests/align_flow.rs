@@ -8,7 +8,7 @@ use cityweld::{
 };
 
 fn block(with_ground: bool) -> Block {
-    Block::four_houses().with_ground(with_ground)
+    if with_ground { Block::four_houses().with_ground() } else { Block::four_houses() }
 }
 
 fn prepared(with_ground: bool) -> PreparedCity {
@@ -58,7 +58,7 @@ fn finds_the_block_from_a_start_that_is_off() {
 
 #[test]
 fn finds_the_block_from_photographs_with_their_cameras_and_superpixels() {
-    let block = Block::mixed_houses().with_ground(true);
+    let block = Block::mixed_houses().with_ground();
     let stations: Vec<Station> = [Ring::street(16), Ring::drone(16)].iter().flat_map(|r| r.stations(&block)).collect();
     let survey = block.capture(&stations, &CaptureOptions::default());
     let start = Start::with_default_sigmas(block.off(&OFF) * survey.city_from_sfm);

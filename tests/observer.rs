@@ -9,7 +9,7 @@ use cityweld::types::MergeError;
 use cityweld::{AlignOptions, Alignment, Cancelled, Error, Observer, PreparedCity, Stage, Start, Up, Verdict, align};
 
 fn block() -> Block {
-    Block::four_houses().with_ground(true)
+    Block::four_houses().with_ground()
 }
 
 fn survey() -> Survey {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::city::CityModel;
-use crate::correspondence::{LevelCloud, Prior};
+use crate::correspondence::{LevelCloud, Prior, Vertical};
 use crate::geometry::{Point3, Start, Vector3};
 use crate::limits::Limits;
 use crate::planes::{Patches, PreparedCity, Upright};
@@ -76,7 +76,7 @@ fn far_off(
         return Some(Obstacle::OddSize { radius_m: level_cloud.radius_m, scale });
     }
     // The sigmas as they were given: bounded by the city they always reach it.
-    let prior = Prior::new(start, place, level_cloud.radius_m, Motion::Similarity, false, None, limits);
+    let prior = Prior::new(start, place, level_cloud.radius_m, Motion::Similarity, Vertical::Free, None, limits);
     let reach = prior.reach(&level_cloud.extent());
     let apart = |k: usize| (low[k] - reach.high[k]).max(reach.low[k] - high[k]).max(0.0);
     if (0..3).all(|k| apart(k) == 0.0) {

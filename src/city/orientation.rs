@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::signed_links::Links;
+use super::signed_links::{EdgeRuns, Links};
 use super::validate::{OBJECTS_PER_CHUNK, facets_by_object, sorted_edges};
 use super::warning::{CityDefect, CityPlace, Warnings};
 use super::{CityModel, CityRole, CitySource, Facet};
@@ -191,7 +191,8 @@ impl<'a> Object<'a> {
         for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
             // More than two facets at one edge tell nothing of each other.
             if let [one, other] = edge {
-                links.tie(one.3 as usize, other.3 as usize, one.2 == other.2);
+                let along = if one.2 == other.2 { EdgeRuns::Alike } else { EdgeRuns::Opposed };
+                links.tie(one.3 as usize, other.3 as usize, along);
             }
         }
         let (mut root_of, mut agrees): (Vec<usize>, Vec<bool>) =

@@ -7,6 +7,14 @@ pub(super) struct Links {
     pub is_twisted: Vec<bool>,
 }
 
+/// How two facets run along the edge that they share.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum EdgeRuns {
+    /// In one direction: one of them is wound the wrong way round.
+    Alike,
+    Opposed,
+}
+
 impl Links {
     pub fn new(count: usize) -> Links {
         Links { on: (0..count).map(|at| (at, true)).collect(), is_twisted: vec![false; count] }
@@ -28,10 +36,10 @@ impl Links {
         (root, agrees)
     }
 
-    /// Two facets at one edge: they have one sense unless both walk it in the same direction.
-    pub fn tie(&mut self, one: usize, other: usize, is_same_direction: bool) {
+    /// Two facets at one edge: they have one sense unless both run along it in the same direction.
+    pub fn tie(&mut self, one: usize, other: usize, along: EdgeRuns) {
         let ((a, a_agrees), (b, b_agrees)) = (self.root(one), self.root(other));
-        let same = (a_agrees == b_agrees) != is_same_direction;
+        let same = (a_agrees == b_agrees) != (along == EdgeRuns::Alike);
         if a == b {
             self.is_twisted[a] |= !same;
             return;

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector4};
 
-use super::prior::Prior;
+use super::prior::{Prior, Vertical};
 use super::targets::{Bounds, Target};
 use crate::geometry::{Plane, Point3, Vector3};
 use crate::limits::Limits;
@@ -93,7 +93,7 @@ impl ScaleTranslationEstimate {
         let (mean, covariance) = prior.scale_and_place();
         ScaleTranslationEstimate {
             rotation,
-            leans: !prior.up_is_known,
+            leans: prior.vertical == Vertical::Free,
             spin: Vector3::zeros(),
             mean,
             covariance,
@@ -209,7 +209,7 @@ mod tests {
 
     fn belief(motion: Motion) -> ScaleTranslationEstimate {
         let (start, limits) = (Start::with_default_sigmas(Similarity::identity()), Limits::default());
-        let prior = Prior::new(&start, Point3::origin(), 40.0, motion, false, None, &limits);
+        let prior = Prior::new(&start, Point3::origin(), 40.0, motion, Vertical::Free, None, &limits);
         ScaleTranslationEstimate::new(&prior, Matrix3::identity(), RowErrors::new(&limits, 40.0))
     }
 

@@ -215,7 +215,7 @@ mod tests {
     /// One box on flat ground, seen all round, its heading unknown.
     fn box_alone() -> (Made, StartSigmas) {
         let seen = CloudOptions { points_per_roof: 100, outlier_share: 0.0, ..CloudOptions::default() };
-        let block = Block::new(vec![House::flat([14.0, 8.0, 6.0])]).with_ground(true);
+        let block = Block::new(vec![House::flat([14.0, 8.0, 6.0])]).with_ground();
         let any_heading = StartSigmas { heading_rad: std::f64::consts::PI, ..StartSigmas::default() };
         (Made::cloud(block, &seen), any_heading)
     }

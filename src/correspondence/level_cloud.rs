@@ -51,6 +51,14 @@ pub struct LevelCloud {
     pub radius_m: f64,
 }
 
+/// From which side level patches were seen, where no camera tells.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum FloorSide {
+    /// From above: z is near enough to up to tell floors from ceilings.
+    Up,
+    Unknown,
+}
+
 impl LevelCloud {
     /// `city_from_sfm` is where the start puts the cloud in the city's local frame; `upright` tells its up.
     pub fn new(patches: &Patches, city_from_sfm: &Similarity, upright: &Upright, limits: &Limits) -> LevelCloud {
@@ -73,7 +81,8 @@ impl LevelCloud {
             noise_m: patches.noise * city_from_sfm.scale,
             radius_m: 0.0,
         };
-        level_cloud.take_patches(patches, 3.0 * upright.sigma_rad < limits.tells_floors_rad, limits);
+        let tells_floors = 3.0 * upright.sigma_rad < limits.tells_floors_rad;
+        level_cloud.take_patches(patches, if tells_floors { FloorSide::Up } else { FloorSide::Unknown }, limits);
         level_cloud.patch_points = level_cloud.sample_points.len();
         level_cloud.weigh(limits);
         level_cloud.take_loose_points(patches, limits);
@@ -82,14 +91,13 @@ impl LevelCloud {
         level_cloud
     }
 
-    /// `floors_look_up`: whether z is near enough to up to tell the side of level patches.
-    fn take_patches(&mut self, patches: &Patches, floors_look_up: bool, limits: &Limits) {
+    fn take_patches(&mut self, patches: &Patches, floors: FloorSide, limits: &Limits) {
         let to_level = self.level_from_sfm;
         let min_cos = limits.same_normal_deg.to_radians().cos();
         for patch in &patches.patches {
             let mut normal = to_level.rotation * patch.fit.plane.normal;
             // Nobody scans a floor from below: where no camera tells, level surfaces look up.
-            let level = floors_look_up && normal.z.abs() > 1.0 - limits.upright_sin;
+            let level = floors == FloorSide::Up && normal.z.abs() > 1.0 - limits.upright_sin;
             if !patch.sided && level && normal.z < 0.0 {
                 normal = -normal;
             }
@@ -215,7 +223,7 @@ mod tests {
     #[test]
     fn weights_are_one_vote_together_and_little_ground_is_heard_beside_many_walls() {
         let seen = CloudOptions { points_on_ground: 60, ..walls_alone() };
-        let made = Made::cloud(Block::four_houses().with_ground(true), &seen);
+        let made = Made::cloud(Block::four_houses().with_ground(), &seen);
         let level_cloud = made.scene(&Offset::default(), Motion::Rigid).level_cloud;
         assert!((level_cloud.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
         let of_ground: f64 = level_cloud.patches.iter().filter(|p| p.normal.z > 0.9).map(|p| p.weight).sum();

@@ -28,7 +28,7 @@ pub use cliques::Graph;
 pub use level_cloud::{LevelCloud, LevelPatch};
 pub use null_poses::{Basin, null_poses};
 pub use pose_search::PoseSearch;
-pub use prior::Prior;
+pub use prior::{Prior, Vertical};
 pub use refine::{PointPlaneMatch, PoseRefiner, RefinedPose};
 pub use sampler::Sampler;
 pub use scene::Scene;

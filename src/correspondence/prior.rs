@@ -13,6 +13,14 @@ use crate::geometry::{Matrix3, Point3, Similarity, Start, StartSigmas, Vector3};
 use crate::limits::Limits;
 use crate::robust::{Matrix7, Motion, MotionParameters};
 
+/// Whether the level frame's z may be taken for up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vertical {
+    Known,
+    /// The pose may lean as far as the start allows.
+    Free,
+}
+
 /// A Gaussian about a start, in the level frame.
 #[derive(Clone, Debug)]
 pub struct Prior {
@@ -21,7 +29,7 @@ pub struct Prior {
     /// Rigid where the scale is given: then it is one, in metres of the start.
     pub motion: Motion,
     /// Whether the level frame's z may be taken for up; else the tilt is as free as the start says.
-    pub up_is_known: bool,
+    pub vertical: Vertical,
     sigmas: StartSigmas,
     reach_sigmas: f64,
     cost_of_sigma_sq: f64,
@@ -63,14 +71,14 @@ impl Prior {
         center_in_city: Point3<f64>,
         radius_m: f64,
         motion: Motion,
-        up_is_known: bool,
+        vertical: Vertical,
         city: Option<(Point3<f64>, Point3<f64>)>,
         limits: &Limits,
     ) -> Prior {
         Prior {
             center_in_city,
             motion,
-            up_is_known,
+            vertical,
             sigmas: bounded(&at_least(start.sigmas(), limits.plane_sigma_m, radius_m), &center_in_city, city),
             reach_sigmas: limits.reach_sigmas,
             cost_of_sigma_sq: limits.prior_cost,
@@ -155,7 +163,11 @@ impl Prior {
         let (bottom, top) = (cloud.bottom_m.min(0.0) * grow, cloud.top_m.max(0.0) * grow);
         let radius = cloud.radius_m * grow;
         // A scene that leans rises by what it is wide, and is wider by what it is high.
-        let lean = if self.up_is_known { 0.0 } else { self.most_tilt_rad().min(std::f64::consts::FRAC_PI_2).sin() };
+        let lean = if self.vertical == Vertical::Known {
+            0.0
+        } else {
+            self.most_tilt_rad().min(std::f64::consts::FRAC_PI_2).sin()
+        };
         let side = radius + lean * top.max(-bottom) + self.reach_sigmas * self.sigmas.position_m + MARGIN_M;
         let rise = lean * radius + self.reach_sigmas * self.sigmas.height_m + MARGIN_M;
         let c = self.center_in_city;
@@ -212,7 +224,7 @@ mod tests {
         change(&mut sigmas);
         let start = Start::new(Similarity::identity(), sigmas).unwrap();
         let city = (Point3::new(-50.0, -50.0, 0.0), Point3::new(250.0, 50.0, 20.0));
-        Prior::new(&start, Point3::new(100.0, 0.0, 5.0), 20.0, motion, true, Some(city), &Limits::default())
+        Prior::new(&start, Point3::new(100.0, 0.0, 5.0), 20.0, motion, Vertical::Known, Some(city), &Limits::default())
     }
 
     fn usual() -> Prior {

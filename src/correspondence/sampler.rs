@@ -20,7 +20,7 @@ use nalgebra::Matrix3;
 
 use super::belief::{RowErrors, ScaleTranslationEstimate};
 use super::level_cloud::{LevelCloud, LevelPatch};
-use super::prior::{Prior, heading_of};
+use super::prior::{Prior, Vertical, heading_of};
 use super::rotations::{about_up, about_up_from, bisectors};
 use super::scene::Scene;
 use super::targets::{LEAST_SIN_FOR_AZIMUTH, Target, Targets, azimuth, elevation, has_azimuth, wrapped};
@@ -141,7 +141,7 @@ impl<'a> Sampler<'a> {
 
     /// Whether the level frame's z may be taken for up.
     pub fn up_is_known(&self) -> bool {
-        self.prior.up_is_known
+        self.prior.vertical == Vertical::Known
     }
 
     /// A sample on so many planes, or `None` where a drawn patch fits nothing.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::level_cloud::LevelCloud;
 use super::mover::Mover;
-use super::prior::{Prior, Reach};
+use super::prior::{Prior, Reach, Vertical};
 use crate::geometry::{Point3, Similarity, Start, Vector3};
 use crate::limits::Limits;
 use crate::planes::{FacetGrid, Facing, Hit, Look, OrientedPoint, Patches, PreparedCity, Upright};
@@ -45,7 +45,7 @@ impl<'a> Scene<'a> {
             level_cloud.center_in_city,
             level_cloud.radius_m,
             motion,
-            upright.known,
+            if upright.known { Vertical::Known } else { Vertical::Free },
             city.model.bounds(),
             limits,
         );
@@ -101,7 +101,7 @@ impl<'a> Scene<'a> {
                     Some(known) if faces_as(&self.level_cloud.sample_points[known.0 as usize], sample_point) => known,
                     other => {
                         let normal = mover.direction(sample_point);
-                        other.insert((i, normal, grid.facing(&normal, sample_point.min_cos, sample_point.sided)))
+                        other.insert((i, normal, grid.facing(&OrientedPoint { normal, ..*sample_point })))
                     }
                 };
                 let sample_point = OrientedPoint { position: *position, normal: *normal, ..*sample_point };

@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn the_share_at_the_truth_is_that_of_the_points_on_what_the_city_knows() {
         let seen = Block::four_houses();
-        let known = Block::new(seen.houses[..3].to_vec()).with_ground(true);
+        let known = Block::new(seen.houses[..3].to_vec()).with_ground();
         let survey = seen.cloud(&CloudOptions { points_per_roof: 100, ..CloudOptions::default() });
         let made = Made::new(known, survey);
         let scene = made.scene(&Offset::default(), Motion::Similarity);

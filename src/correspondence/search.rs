@@ -1,6 +1,7 @@
 //! The robust search for poses: which minimal samples, and how many of them.
 
 use super::pose_search::PoseSearch;
+use super::prior::Vertical;
 use super::refine::PoseRefiner;
 use super::sampler::Sampler;
 use super::scene::Scene;
@@ -106,7 +107,7 @@ impl Problem for Improving<'_> {
 
 /// What is unknown of the pose in the level frame.
 pub(super) fn sought(scene: &Scene) -> Sought {
-    let up = Up::new(&Vector3::z(), &Vector3::z()).filter(|_| scene.prior.up_is_known);
+    let up = Up::new(&Vector3::z(), &Vector3::z()).filter(|_| scene.prior.vertical == Vertical::Known);
     match (up, scene.prior.motion) {
         (Some(up), Motion::Similarity) => Sought::UprightSimilarity(up),
         (Some(up), Motion::Rigid) => Sought::UprightRigid(up),

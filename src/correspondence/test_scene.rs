@@ -37,7 +37,7 @@ impl Made {
     /// Four houses on modelled ground: walls, roofs and ground were seen, 2 cm of noise, one point in ten anywhere.
     pub fn four_houses() -> Made {
         let seen = CloudOptions { points_per_roof: 100, seed: 5, ..CloudOptions::default() };
-        Made::cloud(Block::four_houses().with_ground(true), &seen)
+        Made::cloud(Block::four_houses().with_ground(), &seen)
     }
 
     /// Walls of four houses without ground: nothing but their tops and feet tells the height.
@@ -47,7 +47,7 @@ impl Made {
 
     /// The same houses on their ground, photographed from the street and the air, without clutter and wrong depths.
     pub fn photographed() -> Made {
-        let block = Block::four_houses().with_ground(true);
+        let block = Block::four_houses().with_ground();
         let rings = [Ring::street(12), Ring::drone(12)];
         let stations: Vec<Station> = rings.iter().flat_map(|ring| ring.stations(&block)).collect();
         let exact = CaptureOptions { clutter: 0, outlier_share: 0.0, places: 4000, ..CaptureOptions::default() };

@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn the_pieces_of_a_witness_share_its_one_vote_and_ask_their_own_points() {
         let seen = CloudOptions { points_per_roof: 100, points_on_ground: 200, ..walls_alone() };
-        let (cloud_planes, patches) = of_block(Block::four_houses().with_ground(true), &seen);
+        let (cloud_planes, patches) = of_block(Block::four_houses().with_ground(), &seen);
         assert_eq!(cloud_planes.pieces.len(), patches);
         let mut total = vec![0.0; cloud_planes.class.len()];
         cloud_planes.pieces.iter().for_each(|piece| total[piece.cloud_plane as usize] += piece.share);

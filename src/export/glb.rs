@@ -43,11 +43,18 @@ const POSITIONS: u32 = 0;
 const COLORS: u32 = 1;
 const INDICES: u32 = 2;
 
+/// From where the triangles of a material are drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum SeenFrom {
+    Outside,
+    BothSides,
+}
+
 impl Glb {
-    pub fn material(&mut self, name: &str, color: [f32; 3], double_sided: bool) -> Index<json::Material> {
+    pub fn material(&mut self, name: &str, color: [f32; 3], seen_from: SeenFrom) -> Index<json::Material> {
         self.root.push(json::Material {
             name: Some(name.into()),
-            double_sided,
+            double_sided: seen_from == SeenFrom::BothSides,
             pbr_metallic_roughness: json::material::PbrMetallicRoughness {
                 base_color_factor: json::material::PbrBaseColorFactor([color[0], color[1], color[2], 1.0]),
                 metallic_factor: json::material::StrengthFactor(0.0),

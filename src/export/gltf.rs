@@ -14,7 +14,7 @@ use gltf_json::{Index, Material, Mesh, Node};
 use serde_json::json;
 
 use super::file::{ExportError, write_file};
-use super::glb::{Geometry, Glb};
+use super::glb::{Geometry, Glb, SeenFrom};
 use crate::city::{CityModel, Facet};
 use crate::geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 use crate::reconstruction::{Image, Reconstruction};
@@ -70,7 +70,7 @@ pub fn write_scene(path: &Path, scene: &Scene<'_>) -> Result<(), ExportError> {
     let mut children = Vec::from_iter(city_node);
     if let (Some(placed), Some(extent)) = (&placed, &extent) {
         children.extend(points_node(&mut glb, placed));
-        children.extend(cameras_node(&mut glb, placed, frustum_depth(extent, scene.city.is_some())));
+        children.extend(cameras_node(&mut glb, placed, frustum_depth(extent, scene.city.map(|_| FRUSTUM_LIMITS_M))));
     }
     let children = (!children.is_empty()).then_some(children);
     let root = glb.node(scene.title, Node { children, ..Default::default() });
@@ -88,7 +88,7 @@ pub fn write_scene(path: &Path, scene: &Scene<'_>) -> Result<(), ExportError> {
 /// Writes a city with a colour (sRGB) for every facet.
 pub fn write_colored_city(path: &Path, title: &str, city: &CityModel, colors: &[[u8; 3]]) -> Result<(), ExportError> {
     let mut glb = Glb::default();
-    let material = glb.material("planes", [1.0; 3], true);
+    let material = glb.material("planes", [1.0; 3], SeenFrom::BothSides);
     let mut children = Vec::new();
     for (object, facets) in facets_by_object(city, None) {
         // Facets of one object may share vertices but not colours: every facet has its own.
@@ -131,9 +131,11 @@ fn city_node(glb: &mut Glb, city: &CityModel, extent: Option<&Extent>) -> (Optio
             continue;
         }
         written += indices.len() / 3;
-        let open = !is_closed(&indices);
-        let name = if open { "city, open surfaces" } else { "city" };
-        let material = *materials[usize::from(open)].get_or_insert_with(|| glb.material(name, CITY_COLOR, open));
+        let (at, name, seen_from) = match is_closed(&indices) {
+            true => (0, "city", SeenFrom::Outside),
+            false => (1, "city, open surfaces", SeenFrom::BothSides),
+        };
+        let material = *materials[at].get_or_insert_with(|| glb.material(name, CITY_COLOR, seen_from));
         let geometry =
             Geometry { positions: &positions, colors: &[], indices: &indices, mode: Mode::Triangles, material };
         let name = city.objects.get(object).map_or("", String::as_str);
@@ -204,7 +206,7 @@ fn points_node(glb: &mut Glb, placed: &Placed<'_>) -> Option<Index<Node>> {
     if positions.is_empty() {
         return None;
     }
-    let material = glb.material("points", [1.0; 3], false);
+    let material = glb.material("points", [1.0; 3], SeenFrom::Outside);
     let geometry = Geometry { positions: &positions, colors: &colors, indices: &[], mode: Mode::Points, material };
     let mesh = glb.mesh("points", &geometry)?;
     Some(glb.node("points", Node { mesh: Some(mesh), ..Default::default() }))
@@ -216,7 +218,7 @@ fn cameras_node(glb: &mut Glb, placed: &Placed<'_>, depth: f64) -> Option<Index<
     if placed.reconstruction.images.is_empty() || !(depth as f32).is_finite() {
         return None;
     }
-    let material = glb.material("cameras", CAMERA_COLOR, false);
+    let material = glb.material("cameras", CAMERA_COLOR, SeenFrom::Outside);
     let mesh = frustum_mesh(glb, depth, material)?;
     let mut children = Vec::new();
     for image in &placed.reconstruction.images {
@@ -235,9 +237,10 @@ fn cameras_node(glb: &mut Glb, placed: &Placed<'_>, depth: f64) -> Option<Index<
     (!children.is_empty()).then(|| glb.node("cameras", Node { children: Some(children), ..Default::default() }))
 }
 
-fn frustum_depth(extent: &Extent, is_metric: bool) -> f64 {
+/// `limits`: where lengths are metres.
+fn frustum_depth(extent: &Extent, limits: Option<(f64, f64)>) -> f64 {
     let depth = FRUSTUM_SHARE * extent.diagonal();
-    if is_metric { depth.clamp(FRUSTUM_LIMITS_M.0, FRUSTUM_LIMITS_M.1) } else { depth }
+    limits.map_or(depth, |(least, most)| depth.clamp(least, most))
 }
 
 /// A small pyramid in the camera frame (x right, y down, z forward) with a notch on its upper side.

@@ -93,16 +93,17 @@ fn offer(center: &Center, index: u32, [l, a, b]: [&[f32]; 3], apart: &Apart, lea
             let off = [l[i] - of_l, a[i] - of_a, b[i] - of_b];
             let distance = off[0] * off[0] + off[1] * off[1] + off[2] * off[2] + (across[i] + down);
             let is_nearer = distance < least[i];
-            least[i] = select(is_nearer, distance.to_bits(), least[i].to_bits(), f32::from_bits);
-            nearest[i] = select(is_nearer, index, nearest[i], |index| index);
+            let mask = u32::from(is_nearer).wrapping_neg();
+            least[i] = f32::from_bits(choose(mask, distance.to_bits(), least[i].to_bits()));
+            nearest[i] = choose(mask, index, nearest[i]);
         }
     }
 }
 
+/// `a` where all bits of the mask are set, `b` where none is; without a branch, so that several pixels are done at once.
 #[inline]
-fn select<T>(first: bool, a: u32, b: u32, of: impl Fn(u32) -> T) -> T {
-    let mask = u32::from(first).wrapping_neg();
-    of(a & mask | b & !mask)
+fn choose(mask: u32, a: u32, b: u32) -> u32 {
+    a & mask | b & !mask
 }
 
 /// Moves each centre to the mean of its pixels; one without pixels stays.

@@ -4,6 +4,7 @@
 //!              falls into one of a finer division, for which a table tells the classes that hold directions as near as asked
 //! Why          nine in ten facets near a place face another way than the point that asks
 
+use super::hit::OrientedPoint;
 use crate::geometry::Vector3;
 
 /// Classes to a side of the cube: three by three, so that all of them are bits of a word.
@@ -37,10 +38,12 @@ impl Directions {
         place::<COARSE>(&direction.map(|x| x as f32)) as u32
     }
 
-    /// What directions with at least this cosine to one have in common, or to its opposite where it is not sided.
+    /// What facets that a point may lie on by its direction have in common: normals that agree with its own, or with the opposite where
+    /// its side is not known.
     #[inline]
-    pub fn facing(&self, direction: &Vector3<f64>, min_cos: f64, sided: bool) -> Facing {
-        let normal = direction.map(|x| x as f32);
+    pub fn facing(&self, point: &OrientedPoint) -> Facing {
+        let OrientedPoint { min_cos, sided, .. } = *point;
+        let normal = point.normal.map(|x| x as f32);
         let mut classes = u64::MAX;
         if min_cos >= self.min_cos {
             classes = self.near[place::<FINE>(&normal)];
@@ -121,7 +124,12 @@ fn angle_of(tangent: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point3;
     use crate::robust::Random;
+
+    fn looking(normal: &Vector3<f64>, min_cos: f64, sided: bool) -> OrientedPoint {
+        OrientedPoint { position: Point3::origin(), normal: *normal, sided, min_cos }
+    }
 
     fn any(random: &mut Random) -> Vector3<f64> {
         loop {
@@ -140,8 +148,9 @@ mod tests {
         let (mut taken, mut near) = (0, 0);
         for _ in 0..20_000 {
             let (a, b) = (any(&mut random), any(&mut random));
-            let is_taken =
-                |sided| directions.facing(&a, angle_rad.cos(), sided).classes >> Directions::class(&b) & 1 == 1;
+            let is_taken = |sided| {
+                directions.facing(&looking(&a, angle_rad.cos(), sided)).classes >> Directions::class(&b) & 1 == 1
+            };
             assert!(is_taken(false) || a.dot(&b).abs() < angle_rad.cos(), "{a} {b}");
             let is_taken = is_taken(true);
             assert!(is_taken || a.dot(&b) < angle_rad.cos(), "{a} {b}");
@@ -154,8 +163,8 @@ mod tests {
     #[test]
     fn for_a_wider_angle_than_it_was_made_for_everything_is_near() {
         let directions = Directions::within(0.4);
-        assert_eq!(directions.facing(&Vector3::x(), 0.5, true).classes, u64::MAX);
-        assert_ne!(directions.facing(&Vector3::x(), 0.95, true).classes, u64::MAX);
+        assert_eq!(directions.facing(&looking(&Vector3::x(), 0.5, true)).classes, u64::MAX);
+        assert_ne!(directions.facing(&looking(&Vector3::x(), 0.95, true)).classes, u64::MAX);
     }
 
     #[test]

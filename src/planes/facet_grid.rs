@@ -179,10 +179,10 @@ impl FacetGrid {
         Some(Look { reach_m: self.reach_m, tile, cell, list: List::default() })
     }
 
-    /// Which facets a point of a direction may lie on by theirs.
+    /// Which facets a point may lie on by their direction.
     #[inline]
-    pub fn facing(&self, direction: &Vector3<f64>, min_cos: f64, sided: bool) -> Facing {
-        self.directions.facing(direction, min_cos, sided)
+    pub fn facing(&self, point: &OrientedPoint) -> Facing {
+        self.directions.facing(point)
     }
 
     fn fill(&self, at: usize, surface: &CitySurface, exposure: &FacetVisibility) -> Tile {

@@ -63,7 +63,7 @@ impl PreparedCity {
     /// The facet that a sample point lies on, by a grid of this city.
     #[inline]
     pub fn nearest(&self, grid: &FacetGrid, sample_point: &OrientedPoint, gate_m: f64) -> Option<Hit> {
-        let facing = grid.facing(&sample_point.normal, sample_point.min_cos, sample_point.sided);
+        let facing = grid.facing(sample_point);
         let mut look = self.look(grid, &sample_point.position)?;
         look.find_list();
         look.nearest(sample_point, &facing, gate_m)
@@ -109,7 +109,7 @@ mod tests {
         let mut house = House::flat([6.0, 9.0, 7.0]);
         let floor = [(0.2, 0.2), (5.8, 0.2), (5.8, 8.8), (0.2, 8.8)].map(|(x, y)| Point3::new(x, y, 3.5));
         house.faces.push(Face { surface: Surface::Roof, corners: floor.to_vec() });
-        Block::row(&house, 5, 6.0).with_ground(true)
+        Block::row(&house, 5, 6.0).with_ground()
     }
 
     fn prepared(block: &Block) -> PreparedCity {
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn what_is_asked_twice_or_in_another_order_is_answered_the_same() {
-        let town = Block::town(2, 2, 4).with_ground(true);
+        let town = Block::town(2, 2, 4).with_ground();
         let (one, other) = (prepared(&town), prepared(&town));
         let (low, high) = one.model.bounds().unwrap();
         let first: Vec<bool> = triangles(&one).map(|t| one.is_exposed(t)).collect();

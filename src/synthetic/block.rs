@@ -75,9 +75,9 @@ impl Block {
         Block::new(houses)
     }
 
-    /// With modelled ground at z = 0, 40 m beyond the houses, or without.
-    pub fn with_ground(mut self, wanted: bool) -> Block {
-        self.ground = wanted.then(|| self.ground_within(GROUND_REACH_M));
+    /// With modelled ground at z = 0, 40 m beyond the houses.
+    pub fn with_ground(mut self) -> Block {
+        self.ground = Some(self.ground_within(GROUND_REACH_M));
         self
     }
 
@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn a_block_is_a_sound_city_but_for_its_missing_floors() {
         for block in [Block::four_houses(), Block::mixed_houses(), Block::town(3, 2, 1)] {
-            let city = block.with_ground(true).city().unwrap();
+            let city = block.with_ground().city().unwrap();
             for warning in &city.warnings {
                 assert!(matches!(warning.defect, CityDefect::OpenShell { .. }), "{warning:?}");
             }

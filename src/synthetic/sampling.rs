@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn surfaces_keep_their_area_in_other_facets() {
-        let block = Block::mixed_houses().with_ground(true);
+        let block = Block::mixed_houses().with_ground();
         let area = |b: &Block| b.faces().map(Face::area).sum::<f64>();
         for other in [block.in_triangles(), block.in_halves()] {
             assert!((area(&other) - area(&block)).abs() < 1e-6);

@@ -58,8 +58,9 @@ impl Site {
                 }
             });
         }
-        let model = Block { houses: modelled, ground: None }.with_ground(levels.ground);
-        Site { built: Block::new(built).with_ground(true), modelled: model }
+        let model = Block { houses: modelled, ground: None };
+        let model = if levels.ground { model.with_ground() } else { model };
+        Site { built: Block::new(built).with_ground(), modelled: model }
     }
 }
 

@@ -73,7 +73,7 @@ mod tests {
     }
 
     fn town() -> Block {
-        Block::town(2, 2, 3).with_ground(true)
+        Block::town(2, 2, 3).with_ground()
     }
 
     fn found(made: &Made) -> (Estimate, Scene<'_>) {

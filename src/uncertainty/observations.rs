@@ -108,7 +108,8 @@ pub(super) fn observations(refiner: &PoseRefiner, pose: &Similarity, gate_m: f64
     for of_building in placed.chunk_by(|a, b| a.building == b.building) {
         let body = bodies.get(&of_building[0].building.0);
         let has_walls = body.is_some_and(|body| body.walls_m2 > limits.least_walls * body.other_m2);
-        sample.take_building(of_building, has_walls, scene.limits.upright_sin, limits);
+        let kind = if has_walls { Kind::Built } else { Kind::Ground };
+        sample.take_building(of_building, kind, scene.limits.upright_sin, limits);
     }
     sample.tell_lids();
     sample
@@ -156,22 +157,21 @@ impl Observations {
         }
     }
 
-    fn take_building(&mut self, rows: &[Placed], has_walls: bool, upright_sin: f64, limits: &UncertaintyLimits) {
+    fn take_building(&mut self, rows: &[Placed], kind: Kind, upright_sin: f64, limits: &UncertaintyLimits) {
         let first = self.building_planes.len();
         for building_plane in building_planes(rows, limits) {
-            self.take_building_plane(&building_plane, has_walls, upright_sin, limits);
+            self.take_building_plane(&building_plane, kind, upright_sin, limits);
         }
         let middle = centroid(rows.iter().map(|p| p.row));
         let spread = rows.iter().map(|p| (p.row.place - middle).xy().norm_squared()).sum::<f64>() / rows.len() as f64;
         let lever_m = spread.sqrt().max(limits.least_lever_m);
-        let kind = if has_walls { Kind::Built } else { Kind::Ground };
         self.buildings.push(Building { building_planes: first..self.building_planes.len(), middle, lever_m, kind });
     }
 
     fn take_building_plane(
         &mut self,
         rows: &[&PointPlaneMatch],
-        has_walls: bool,
+        kind: Kind,
         upright_sin: f64,
         limits: &UncertaintyLimits,
     ) {
@@ -196,8 +196,7 @@ impl Observations {
             reach_m.max(limits.cell_m)
         });
         let is_wall = normal.z.abs() < upright_sin;
-        let is_top = has_walls && normal.z > 1.0 - upright_sin;
-        let kind = if has_walls { Kind::Built } else { Kind::Ground };
+        let is_top = kind == Kind::Built && normal.z > 1.0 - upright_sin;
         self.building_planes.push(BuildingPlane {
             cells: first..self.cells.len(),
             middle,

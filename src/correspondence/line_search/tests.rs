@@ -34,7 +34,7 @@ fn tops_and_feet_of_walls_tell_a_loose_height() {
 #[test]
 fn a_loose_height_over_ground_is_found_by_the_ground() {
     let seen = CloudOptions { points_on_ground: 500, ..walls_alone() };
-    let made = Made::cloud(Block::four_houses().with_ground(true), &seen);
+    let made = Made::cloud(Block::four_houses().with_ground(), &seen);
     let scene = made.scene(&Offset::default(), Motion::Rigid);
     // Beyond the gate, where the ground holds nothing.
     let found = slid(&PoseRefiner::new(&scene), &raised(&made, &scene, 1.0));
@@ -60,7 +60,7 @@ fn a_cloud_whose_plinth_lies_on_the_wall_hops_to_its_own_place() {
     let survey = seen.cloud(&CloudOptions { points_on_ground: 300, seed: 2, ..walls_alone() });
     // In the city the wall goes on behind the plinth, as it does where models are made of boxes.
     let boxes = [House::flat([40.0, 10.0, 8.0]), House::flat([40.0, 0.5, 4.0]).at([0.0, -0.5, 0.0])];
-    let made = Made::new(Block::new(boxes.to_vec()).with_ground(true), survey);
+    let made = Made::new(Block::new(boxes.to_vec()).with_ground(), survey);
     let scene = made.scene(&Offset::default(), Motion::Rigid);
     let refiner = PoseRefiner::new(&scene);
     let point_subset = scene.level_cloud.point_subset(1500);

@@ -75,7 +75,7 @@ fn a_height_that_no_plane_holds_stays_where_it_was() {
 
 #[test]
 fn one_plane_with_very_many_points_does_not_outweigh_many_planes() {
-    let block = Block::four_houses().with_ground(true);
+    let block = Block::four_houses().with_ground();
     // The front of the first house stands 10 cm before its place in the model, and has forty times the points of any other wall.
     let mut front = House { faces: block.houses[0].faces[..1].to_vec() };
     front = front.at([0.0, -0.1, 0.0]);
@@ -101,7 +101,7 @@ fn one_plane_with_very_many_points_does_not_outweigh_many_planes() {
 fn noise_across_the_walls_does_not_make_the_scale_smaller() {
     // Ten centimetres of noise; a smaller cloud has less of it.
     let noisy = CloudOptions { noise_m: 0.1, points_per_roof: 100, outlier_share: 0.0, ..CloudOptions::default() };
-    let made = Made::cloud(Block::four_houses().with_ground(true), &noisy);
+    let made = Made::cloud(Block::four_houses().with_ground(), &noisy);
     let scene = made.scene(&Offset::default(), Motion::Similarity);
     let refiner = PoseRefiner::new(&scene);
     let rows = refiner.point_plane_matches(&patch_points(&scene), &made.truth(&scene), scene.gate_unit_m);

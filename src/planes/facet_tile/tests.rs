@@ -24,7 +24,7 @@ fn slowly(city: &PreparedCity, sample_point: &OrientedPoint, gate_m: f64, is_bey
 
 #[test]
 fn agrees_to_the_bit_with_looking_at_every_triangle() {
-    let city = PreparedCity::new(Block::town(2, 2, 5).with_ground(true).city().unwrap());
+    let city = PreparedCity::new(Block::town(2, 2, 5).with_ground().city().unwrap());
     let (low, high) = city.model.bounds().unwrap();
     let mut random = Random::stream(5, 0);
     let normals: Vec<Vector3<f64>> = city.model.facets.iter().map(|facet| facet.plane.normal).collect();

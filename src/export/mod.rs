@@ -8,11 +8,14 @@ mod folder;
 mod glb;
 mod merge_report;
 pub mod gltf;
+mod gltf_city;
+mod gltf_photographs;
 mod output;
 mod output_error;
 mod planes;
 pub mod ply;
 mod report;
+mod scene_extent;
 mod work;
 
 pub use earlier::UnpackedFile;

@@ -6,6 +6,9 @@
 
 mod axes;
 mod camera;
+mod camera_model;
+mod distortion;
+mod lens;
 mod plane;
 mod rays;
 mod rotation;
@@ -13,7 +16,8 @@ mod similarity;
 mod start;
 
 pub use axes::Axes;
-pub use camera::{Camera, CameraModel};
+pub use camera::Camera;
+pub use camera_model::CameraModel;
 pub use plane::{Plane, distance_derivative};
 pub use rays::RayCaster;
 pub use rotation::{nearest_rotation, orthonormalised};

@@ -9,11 +9,14 @@ mod facet_tile;
 mod fit;
 mod hit;
 mod patches;
+mod places;
 mod prepared_city;
+mod regions;
 mod surface;
 mod tile_triangle;
 mod up_votes;
 mod upright;
+mod viewers;
 
 pub use city_planes::{CityPlane, CityPlanes, PlaneId, city_planes};
 pub use directions::Facing;

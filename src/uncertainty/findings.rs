@@ -1,7 +1,8 @@
 //! What the unknowns beside the pose turned out to be, and what of it is worth telling.
 
 use super::observations::Kind;
-use super::system::{COMMON, LIDS, System, WALLS};
+use super::rows::{COMMON, LIDS, WALLS};
+use super::system::System;
 use crate::limits::UncertaintyLimits;
 
 /// Errors of the model and of the reconstruction, metres.

@@ -13,7 +13,8 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::elimination::{eliminate, inverse};
-use super::system::{POSE, System};
+use super::rows::POSE;
+use super::system::System;
 use crate::robust::{Matrix7, Vector7};
 
 /// By how much directions of the pose scatter more than stated.

@@ -15,7 +15,9 @@ mod estimate;
 mod findings;
 mod leave_out;
 mod observations;
+mod rows;
 mod system;
+mod variances;
 
 pub use estimate::{Estimate, estimate};
 pub use findings::SystematicErrors;

@@ -1,6 +1,8 @@
 use super::super::observations::observations;
+use super::super::rows::OF_BUILDING_PLANE;
 use super::*;
 use crate::correspondence::test_scene::Made;
+use crate::robust::Motion;
 use crate::synthetic::Offset;
 
 #[test]

@@ -4,13 +4,16 @@
 mod belief;
 mod candidates;
 mod cliques;
+mod first_pair;
 mod mover;
+mod offers;
 mod null_poses;
 mod solver_choice;
 mod pose_search;
 mod prior;
 mod refine;
 mod rotations;
+mod sample;
 mod sampler;
 mod scene;
 mod scoring;

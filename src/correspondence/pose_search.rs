@@ -1,7 +1,8 @@
 //! Poses of minimal samples as the robust loop sees them: drawn, solved, and scored on facets.
 
 use super::level_cloud::LevelPatch;
-use super::sampler::{MinimalSample, PatchPlanePair, Sampler};
+use super::sample::{MinimalSample, PatchPlanePair};
+use super::sampler::Sampler;
 use super::scene::Scene;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::robust::{Problem, Random};

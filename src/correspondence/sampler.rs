@@ -13,62 +13,37 @@
 //!
 //! Frames: `level` is centred on the cloud, z up, in metres of the start; the city frame is its own local one.
 
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use nalgebra::Matrix3;
 
 use super::belief::{RowErrors, ScaleTranslationEstimate};
 use super::level_cloud::{LevelCloud, LevelPatch};
+use super::offers::FirstOffers;
 use super::prior::{Prior, Vertical, heading_of};
 use super::rotations::{about_up, about_up_from, bisectors};
+use super::sample::{Draft, MinimalSample, PatchPlanePair};
 use super::scene::Scene;
 use super::targets::{LEAST_SIN_FOR_AZIMUTH, Target, Targets, azimuth, elevation, has_azimuth, wrapped};
 use super::weighted_choice::{Choice, Drawn};
-use crate::geometry::{Plane, Rotation3, Vector3};
+use crate::geometry::{Rotation3, Vector3};
 use crate::limits::SearchLimits;
 use crate::planes::{CityPlanes, PlaneId};
 use crate::robust::{Motion, Random};
-use crate::solvers::Row;
-
-/// A patch on a plane of the city.
-#[derive(Clone, Copy, Debug)]
-pub struct PatchPlanePair {
-    pub patch: u32,
-    pub plane: PlaneId,
-    /// The plane as the patch sees it: its normal on the patch's side.
-    pub target: Plane,
-    /// The patch's normal in the level frame, on the side from which it is meant.
-    pub normal: Vector3<f64>,
-}
-
-/// A minimal sample: pairs, and what completes them where they leave a direction open.
-#[derive(Clone, Debug)]
-pub struct MinimalSample {
-    pub pairs: Vec<PatchPlanePair>,
-    /// Rows for what the pairs leave open (a height that no floor fixes), drawn from what the start says of it.
-    pub completion: Vec<Row>,
-    /// The chance that all of it is right, as far as its patches lie on the city at all.
-    pub chance: f64,
-}
 
 /// Draws samples.
 pub struct Sampler<'a> {
-    level_cloud: &'a LevelCloud,
-    prior: &'a Prior,
+    pub(super) level_cloud: &'a LevelCloud,
+    pub(super) prior: &'a Prior,
     limits: &'a SearchLimits,
     errors: RowErrors,
     planes: &'a CityPlanes,
-    targets: Targets,
+    pub(super) targets: Targets,
     /// Patches drawn for a place in a sample until one can lie anywhere.
     draws: usize,
     /// Rising sums of the patches' weights: all, and those with an azimuth.
     all: Vec<f64>,
     turned: Vec<f64>,
-    /// For each patch what it is offered as the first of a sample, which nothing but the prior decides; found when first asked.
-    firsts: Vec<OnceLock<Offers>>,
-    /// Offers kept in `firsts`.
-    kept: AtomicUsize,
+    /// For each patch what it is offered as the first of a sample, which nothing but the prior decides.
+    pub(super) firsts: FirstOffers,
 }
 
 /// Result of drawing the next pair.
@@ -79,20 +54,6 @@ enum NextPair {
     /// None of the patches drawn can lie anywhere.
     NothingFits,
 }
-
-/// All that a patch may lie on.
-#[derive(Default)]
-struct Offers {
-    /// Rising sums of the likelihoods.
-    sums: Vec<f64>,
-    /// The targets, and whether the patch is turned over.
-    what: Vec<(PlaneId, bool)>,
-    /// That a draw takes the right one.
-    chance: f64,
-}
-
-/// Offers beyond so many are found anew with each draw: what a city without a start would offer must not fill the memory. Chosen: 32 MB.
-const MOST_OFFERS_KEPT: usize = 2_000_000;
 
 /// Draws of the pilot that tells whether patches find planes. Derived: a share is then known to 3 %.
 const PILOT_DRAWS: u64 = 256;
@@ -123,8 +84,7 @@ impl<'a> Sampler<'a> {
             errors: RowErrors::new(scene.limits, level_cloud.radius_m),
             planes: scene.city.planes(),
             targets: Targets::new(scene.city.planes(), &in_sight, limits.smallest_target_m2),
-            firsts: level_cloud.patches.iter().map(|_| OnceLock::new()).collect(),
-            kept: AtomicUsize::new(0),
+            firsts: FirstOffers::of(level_cloud.patches.len()),
             all: rising(|_| true),
             turned: rising(|p| has_azimuth(&p.normal)),
             draws: 1,
@@ -206,68 +166,8 @@ impl<'a> Sampler<'a> {
         NextPair::NothingFits
     }
 
-    fn belief(&self, rotation: Matrix3<f64>) -> ScaleTranslationEstimate {
+    pub(super) fn belief(&self, rotation: Matrix3<f64>) -> ScaleTranslationEstimate {
         ScaleTranslationEstimate::new(self.prior, rotation, self.errors)
-    }
-
-    /// A plane for the first patch of a sample.
-    fn first_pair(&self, patch: usize, random: &mut Random) -> Option<Drawn<PatchPlanePair>> {
-        let kept = &self.firsts[patch];
-        if kept.get().is_some() || self.kept.load(Ordering::Relaxed) < MOST_OFFERS_KEPT {
-            return self.draw_first(patch, kept.get_or_init(|| self.counted(self.first_offers(patch))), random);
-        }
-        self.draw_first(patch, &self.first_offers(patch), random)
-    }
-
-    fn counted(&self, offers: Offers) -> Offers {
-        self.kept.fetch_add(offers.what.len(), Ordering::Relaxed);
-        offers
-    }
-
-    fn draw_first(&self, patch: usize, offers: &Offers, random: &mut Random) -> Option<Drawn<PatchPlanePair>> {
-        let (id, is_turned_over) = offers.what[random.weighted(&offers.sums)?];
-        let normal = self.level_cloud.patches[patch].normal;
-        let normal = if is_turned_over { -normal } else { normal };
-        Some(Drawn { what: self.pair(patch, normal, id), chance: offers.chance })
-    }
-
-    fn first_offers(&self, patch: usize) -> Offers {
-        let mut offers = Offers::default();
-        for (normal, is_turned_over) in sides(&self.level_cloud.patches[patch]).zip([false, true]) {
-            let offer = |t: &Target, likelihood: f64| offers.add(likelihood, (t.id, is_turned_over));
-            if self.up_is_known() {
-                self.offer_turned(patch, &normal, offer);
-            } else {
-                self.offer_leaning(patch, &normal, offer);
-            }
-        }
-        offers.finish()
-    }
-
-    /// Planes for the first patch under known up, by the turn about up that leads the patch into each.
-    fn offer_turned(&self, patch: usize, normal: &Vector3<f64>, mut offer: impl FnMut(&Target, f64)) {
-        let belief = self.belief(Matrix3::identity());
-        let has_same_tilt = self.tilted_as(normal);
-        self.targets.each_facing(azimuth(normal), self.prior.most_heading_rad(), |t| {
-            if has_same_tilt(t) {
-                let turned = belief.turned(about_up_from(normal, &t.normal()));
-                let likelihood = turned.predict(&self.level_cloud.patches[patch].center).likelihood(t);
-                likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
-            }
-        });
-    }
-
-    /// Planes for the first patch under free up. Its normal is laid onto the plane's; what stays open is a spin about it, which moves the
-    /// patch within its plane and not across.
-    fn offer_leaning(&self, patch: usize, normal: &Vector3<f64>, mut offer: impl FnMut(&Target, f64)) {
-        let belief = self.belief(Matrix3::identity());
-        let turn_onto = self.turning(normal);
-        for t in self.targets.all() {
-            let Some(rotation) = turn_onto(t) else { continue };
-            let leaning = belief.turned(rotation).spinning(self.prior.spin_sigma_about(&t.normal()));
-            let likelihood = leaning.predict(&self.level_cloud.patches[patch].center).likelihood(t);
-            likelihood.into_iter().for_each(|likelihood| offer(t, likelihood));
-        }
     }
 
     /// A plane for the second patch under free up, and the rotation that lays both normals along their planes'.
@@ -281,7 +181,7 @@ impl<'a> Sampler<'a> {
         let belief = self.belief(Matrix3::identity());
         let first_center = &self.level_cloud.patches[first.patch as usize].center;
         let mut choice = Choice::default();
-        for normal in sides(p) {
+        for normal in p.sides() {
             let cos = first.normal.dot(&normal);
             let Some(level_axes) = bisectors(&first.normal, &normal) else { continue };
             for t in self.targets.all() {
@@ -305,13 +205,13 @@ impl<'a> Sampler<'a> {
         Some(Drawn { what: (rotation, self.pair(patch, normal, id)), chance })
     }
 
-    fn pair(&self, patch: usize, normal: Vector3<f64>, plane: PlaneId) -> PatchPlanePair {
+    pub(super) fn pair(&self, patch: usize, normal: Vector3<f64>, plane: PlaneId) -> PatchPlanePair {
         PatchPlanePair { patch: patch as u32, plane, target: self.planes.planes[plane.0 as usize].plane, normal }
     }
 
     /// The rotation that lays a normal onto a target's: a heading first, as far as both have an azimuth, then the least tilt;
     /// `None` where the start does not reach so far.
-    fn turning(&self, normal: &Vector3<f64>) -> impl Fn(&Target) -> Option<Matrix3<f64>> {
+    pub(super) fn turning(&self, normal: &Vector3<f64>) -> impl Fn(&Target) -> Option<Matrix3<f64>> {
         let (normal, has, own) = (*normal, has_azimuth(normal), [azimuth(normal), elevation(normal)]);
         let tilt = self.prior.most_tilt_rad();
         // A tilt turns azimuths too: by its tangent's share on slopes, to second order on walls.
@@ -366,7 +266,7 @@ impl<'a> Sampler<'a> {
         let p = &self.level_cloud.patches[patch];
         let expected = belief.predict(&p.center);
         let mut choice = Choice::default();
-        for side in sides(p) {
+        for side in p.sides() {
             let normal = belief.turn(&side);
             let has_same_tilt = self.tilted_as(&normal);
             let offer = |t: &Target| {
@@ -386,51 +286,10 @@ impl<'a> Sampler<'a> {
     }
 
     /// Whether a target is tilted as a normal is.
-    fn tilted_as(&self, normal: &Vector3<f64>) -> impl Fn(&Target) -> bool + use<> {
+    pub(super) fn tilted_as(&self, normal: &Vector3<f64>) -> impl Fn(&Target) -> bool + use<> {
         let (own, most) = (elevation(normal) as f32, self.limits.same_angle_rad as f32);
         move |target| (own - target.elevation).abs() < most
     }
-}
-
-impl Offers {
-    fn add(&mut self, likelihood: f64, what: (PlaneId, bool)) {
-        let before = self.sums.last().copied().unwrap_or(0.0);
-        self.sums.push(before + likelihood);
-        self.what.push(what);
-        self.chance += likelihood * likelihood;
-    }
-
-    fn finish(mut self) -> Offers {
-        self.sums.shrink_to_fit();
-        self.what.shrink_to_fit();
-        let total = self.sums.last().copied().unwrap_or(0.0);
-        Offers { chance: self.chance / (total * total), ..self }
-    }
-}
-
-/// A sample on its way.
-struct Draft {
-    belief: ScaleTranslationEstimate,
-    pairs: Vec<PatchPlanePair>,
-    chance: f64,
-}
-
-impl Draft {
-    fn new(belief: ScaleTranslationEstimate) -> Draft {
-        Draft { belief, pairs: Vec::with_capacity(4), chance: 1.0 }
-    }
-
-    fn take(&mut self, level_cloud: &LevelCloud, drawn: Drawn<PatchPlanePair>) {
-        self.belief.learn(&level_cloud.patches[drawn.what.patch as usize].center, &drawn.what.target);
-        self.chance *= drawn.chance;
-        self.pairs.push(drawn.what);
-    }
-}
-
-/// A patch's normal, and its opposite where no camera tells the side.
-fn sides(patch: &LevelPatch) -> impl Iterator<Item = Vector3<f64>> + use<> {
-    let normal = patch.normal;
-    [1.0, -1.0].into_iter().take(if patch.sided { 1 } else { 2 }).map(move |side| normal * side)
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ mod ledger;
 mod limits;
 mod network;
 mod outcome;
+mod pair_limits;
 mod pairwise;
 mod part;
 mod point_covariance;

@@ -3,7 +3,7 @@
 //! Each ray holds the point across itself, with the focal length over the distance as pixels per unit of length; the sum of
 //! these informations is that of linear triangulation (Hartley and Zisserman 2004, chapter 12).
 
-use super::limits::KeypointLimits;
+use super::pair_limits::KeypointLimits;
 use crate::geometry::{Camera, CameraModel, Matrix3, Point3};
 use crate::reconstruction::{ImageIndex, PointIndex, Reconstruction};
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::limits::KeypointLimits;
+use super::pair_limits::KeypointLimits;
 use crate::reconstruction::{ImageIndex, Observation, Reconstruction};
 
 /// One photograph in two parts.

@@ -99,7 +99,7 @@ fn offers_that_are_not_kept_are_the_same() {
     for scene in [made.scene(&OFF, Motion::Similarity), made.leaning_scene(&OFF, Motion::Similarity)] {
         let kept = samples(&scene);
         let forgetful = Sampler::new(&scene);
-        forgetful.kept.store(MOST_OFFERS_KEPT, Ordering::Relaxed);
+        forgetful.firsts.keep_no_more();
         let draw = |stream| forgetful.draw(4, &mut Random::stream(7, stream));
         let found: Vec<MinimalSample> = (0..2000).filter_map(draw).collect();
         assert_eq!(found.len(), kept.len());

@@ -7,7 +7,7 @@ use super::point_rows::MEDIAN_NORM;
 use super::rows::Rows;
 use super::shared_tracks::CameraPair;
 use crate::geometry::{Matrix3, Similarity, Vector3};
-use crate::merging::limits::CameraFitLimits;
+use crate::merging::pair_limits::CameraFitLimits;
 use crate::robust::{MotionParameters, NormalEquations, Vector7};
 
 /// No bend is smaller than this share of a camera's depth where its centre is weighed: keeps the sigma from zero.

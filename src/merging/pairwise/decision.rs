@@ -10,7 +10,8 @@ use nalgebra::SymmetricEigen;
 use super::fit::Fit;
 use super::shared_tracks::{CameraPair, SharedTracks};
 use crate::merging::fault::PairFault;
-use crate::merging::limits::{MergeLimits, PairDecisionLimits};
+use crate::merging::limits::MergeLimits;
+use crate::merging::pair_limits::PairDecisionLimits;
 
 /// Whether two parts belong together.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 use super::design_effect::design_effect;
 use super::rows::{Rows, Source};
 use crate::geometry::Similarity;
-use crate::merging::limits::FitLimits;
+use crate::merging::pair_limits::FitLimits;
 use crate::robust::{Matrix7, MotionParameters, NormalEquations, median};
 
 /// Steps of Gauss-Newton, and turns of pose and bend.

@@ -3,7 +3,7 @@
 use super::planes::{PlaneOf, SharedPlanes};
 use crate::geometry::Similarity;
 use crate::merging::fault::PairFault;
-use crate::merging::limits::PairDecisionLimits;
+use crate::merging::pair_limits::PairDecisionLimits;
 
 /// Share of the points that lie on their planes, to `on_plane` of the radius, each group counting by the root of its points.
 pub(super) fn share_on_planes(planes: &SharedPlanes, a_from_b: &Similarity, on_plane: f64) -> f64 {

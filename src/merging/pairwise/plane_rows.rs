@@ -13,7 +13,7 @@ use super::fit::{OwnFit, settle_near};
 use super::planes::{Measured, PlaneGroup, PlaneOf, SharedPlanes};
 use super::rows::{Miss, PlacedEquations, Rows, Source};
 use crate::geometry::{Point3, Similarity, Vector3};
-use crate::merging::limits::FitLimits;
+use crate::merging::pair_limits::FitLimits;
 use crate::merging::point_covariance::KnownPoint;
 use crate::robust::{Matrix7, MotionParameters, NormalEquations, truncated_quadratic, tukey_weight};
 

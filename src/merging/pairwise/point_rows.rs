@@ -8,7 +8,7 @@
 use super::rows::{Miss, PlacedEquations, Rows, Source};
 use super::shared_tracks::PointPair;
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
-use crate::merging::limits::FitLimits;
+use crate::merging::pair_limits::FitLimits;
 use crate::robust::{MotionParameters, NormalEquations, truncated_quadratic, tukey_weight};
 
 /// Median of the norm of a whitened residual with three degrees of freedom (square root of the chi-square's 2.366).

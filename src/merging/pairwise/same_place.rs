@@ -1,7 +1,7 @@
 //! When two hypotheses of a search are one place.
 
 use crate::geometry::{Point3, Similarity};
-use crate::merging::limits::PairSearchLimits;
+use crate::merging::pair_limits::PairSearchLimits;
 
 pub(super) struct SamePlace<'a> {
     /// Middle of what is sought, in b.

@@ -12,7 +12,8 @@ use super::shared_tracks::{CameraPair, PointPair, SharedTracks};
 use super::umeyama::umeyama;
 use crate::geometry::{Point3, Similarity};
 use crate::merging::extent::median_point;
-use crate::merging::limits::{FitLimits, MergeLimits};
+use crate::merging::limits::MergeLimits;
+use crate::merging::pair_limits::FitLimits;
 use crate::robust::{Problem, Random, RansacOptions, ransac};
 
 /// What pairs and cameras give.

@@ -5,7 +5,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 /// `q = radial * p`, then tangential and thin-prism shifts, taken at `p` or, where `shifts_after_radial`, at `q`.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Distortion {
     /// Coefficients of r^2, r^4, ... above and below the fraction line.
     pub numerator: [f64; 6],
@@ -108,3 +108,6 @@ fn polynomial(coefficients: &[f64], t: f64) -> (f64, f64) {
     });
     (1.0 + value, slope)
 }
+
+#[cfg(test)]
+mod tests;

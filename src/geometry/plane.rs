@@ -42,19 +42,4 @@ pub fn distance_derivative(y: &Vector3<f64>, n: &Vector3<f64>) -> [f64; 7] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn distance_is_positive_on_the_side_of_the_normal() {
-        let plane = Plane::through(&Point3::new(0.0, 0.0, 2.0), &Vector3::new(0.0, 0.0, 5.0)).unwrap();
-        assert_eq!(plane.signed_distance(&Point3::new(7.0, -3.0, 3.5)), 1.5);
-        assert_eq!(plane.flipped().signed_distance(&Point3::new(7.0, -3.0, 3.5)), -1.5);
-    }
-
-    #[test]
-    fn refuses_a_normal_without_direction() {
-        assert!(Plane::through(&Point3::origin(), &Vector3::zeros()).is_none());
-        assert!(Plane::through(&Point3::origin(), &Vector3::new(f64::NAN, 0.0, 1.0)).is_none());
-    }
-}
+mod tests;

@@ -28,22 +28,4 @@ pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Option<Rotation3<f64>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_rotation_with_rounding_becomes_the_same_by_both_ways() {
-        let exact = Rotation3::from_euler_angles(0.4, -1.1, 2.0);
-        let rough = exact.matrix() + Matrix3::new(1.0, -2.0, 0.5, 0.3, 1.0, -0.7, 2.0, 0.1, -1.0) * 1e-7;
-        let (by_newton, by_svd) = (orthonormalised(&rough), nearest_rotation(&rough).unwrap());
-        assert!((by_newton.matrix() - by_svd.matrix()).norm() < 1e-14);
-        assert!((by_newton.matrix() * by_newton.matrix().transpose() - Matrix3::identity()).norm() < 1e-15);
-        assert!((by_newton.matrix() - exact.matrix()).norm() < 1e-6);
-    }
-
-    #[test]
-    fn a_reflection_becomes_a_rotation() {
-        let rotation = nearest_rotation(&Matrix3::from_diagonal(&nalgebra::Vector3::new(3.0, 2.0, -1.0))).unwrap();
-        assert!((rotation.matrix() - Matrix3::identity()).norm() < 1e-15);
-    }
-}
+mod tests;

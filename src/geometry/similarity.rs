@@ -93,44 +93,4 @@ impl std::ops::Mul for Similarity {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn example() -> Similarity {
-        Similarity {
-            scale: 2.5,
-            rotation: Rotation3::from_euler_angles(0.3, -0.4, 1.9),
-            translation: Vector3::new(5.0, -7.0, 0.5),
-        }
-    }
-
-    #[test]
-    fn inverse_undoes() {
-        let p = Point3::new(1.0, 2.0, 3.0);
-        assert!((example().inverse().apply(&example().apply(&p)) - p).norm() < 1e-14);
-        let both = example() * example().inverse();
-        assert!((both.scale - 1.0).abs() < 1e-15 && both.translation.norm() < 1e-14);
-    }
-
-    #[test]
-    fn refuses_what_is_no_similarity() {
-        let r = example().rotation.into_inner();
-        let t = Vector3::zeros();
-        assert!(matches!(Similarity::try_new(0.0, r, t), Err(NotASimilarity::Scale(_))));
-        assert!(matches!(Similarity::try_new(f64::NAN, r, t), Err(NotASimilarity::Scale(_))));
-        assert!(matches!(Similarity::try_new(1.0, 1.01 * r, t), Err(NotASimilarity::NotOrthonormal(_))));
-        assert!(matches!(Similarity::try_new(1.0, -r, t), Err(NotASimilarity::Reflection)));
-        assert!(matches!(
-            Similarity::try_new(1.0, r, Vector3::new(f64::INFINITY, 0.0, 0.0)),
-            Err(NotASimilarity::NotFinite)
-        ));
-    }
-
-    #[test]
-    fn makes_a_rotation_of_few_digits_exact() {
-        let rough = example().rotation.into_inner().map(|v| (v * 1e7).round() / 1e7);
-        let made = Similarity::try_new(1.0, rough, Vector3::zeros()).unwrap();
-        let m = made.rotation.into_inner();
-        assert!((m * m.transpose() - Matrix3::identity()).amax() < 1e-15);
-    }
-}
+mod tests;

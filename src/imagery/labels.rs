@@ -99,45 +99,4 @@ pub(super) fn decode_labels(picture: Picture<'_>) -> Result<LabelMap, ImageryErr
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn two_by_two() -> LabelMap {
-        LabelMap { width: 2, height: 2, labels: Labels::U8(vec![1, 2, 3, 4]) }
-    }
-
-    #[test]
-    fn ids_are_the_same_at_every_width() {
-        let ids = [0, 7, 255];
-        let all = [
-            Labels::U8(ids.map(|id| id as u8).to_vec()),
-            Labels::U16(ids.map(|id| id as u16).to_vec()),
-            Labels::U32(ids.to_vec()),
-        ];
-        assert!(all.iter().all(|labels| labels.iter().eq(ids) && labels.get(3).is_none() && labels.len() == 3));
-    }
-
-    #[test]
-    fn a_point_falls_on_the_pixel_of_its_floor() {
-        let map = two_by_two();
-        assert_eq!(map.label_at(0.99, 0.0, (2, 2)), Some(1));
-        assert_eq!(map.label_at(1.0, 0.5, (2, 2)), Some(2));
-        assert_eq!(map.label_at(0.5, 1.5, (2, 2)), Some(3));
-    }
-
-    #[test]
-    fn a_smaller_map_is_stretched_over_the_image() {
-        let map = two_by_two();
-        assert_eq!(map.label_at(4.99, 4.99, (10, 10)), Some(1));
-        assert_eq!(map.label_at(5.0, 9.99, (10, 10)), Some(4));
-    }
-
-    #[test]
-    fn points_outside_and_nan_have_no_label() {
-        let map = two_by_two();
-        for (x, y) in [(-0.1, 0.5), (2.0, 0.5), (0.5, 2.0), (f64::NAN, 0.5), (f64::INFINITY, 0.5)] {
-            assert_eq!(map.label_at(x, y, (2, 2)), None);
-        }
-        assert_eq!(map.label_at(2.0_f64.next_down(), 0.0, (2, 2)), Some(2));
-    }
-}
+mod tests;

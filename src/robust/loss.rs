@@ -15,16 +15,4 @@ pub fn truncated_quadratic(residual_sq: f64, width: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn falls_to_zero_at_the_width() {
-        assert_eq!(tukey_weight(0.0, 2.0), 1.0);
-        assert_eq!(tukey_weight(1.0, 2.0), 0.5625);
-        assert_eq!(tukey_weight(4.0, 2.0), 0.0);
-        assert_eq!(tukey_weight(9.0, 2.0), 0.0);
-        assert_eq!(truncated_quadratic(1.0, 2.0), 0.75);
-        assert_eq!(truncated_quadratic(5.0, 2.0), 0.0);
-    }
-}
+mod tests;

@@ -13,14 +13,4 @@ pub fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn takes_the_nearest_rank() {
-        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
-        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), Some(3.0));
-        assert_eq!(quantile(&mut [5.0, 4.0, 3.0, 2.0, 1.0], 0.8), Some(4.0));
-        assert_eq!(median(&mut []), None);
-    }
-}
+mod tests;

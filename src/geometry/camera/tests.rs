@@ -136,3 +136,76 @@ fn a_field_of_view_of_zero_is_a_pinhole() {
         );
     }
 }
+
+/// A camera of each model with a usual lens.
+fn usual_cameras() -> Vec<Camera> {
+    let extra = |model: CameraModel| -> Vec<f64> {
+        match model {
+            CameraModel::SimplePinhole | CameraModel::SimpleFisheye => vec![800.0, 640.0, 480.0],
+            CameraModel::Pinhole | CameraModel::Fisheye => vec![800.0, 810.0, 640.0, 480.0],
+            CameraModel::SimpleRadial | CameraModel::SimpleRadialFisheye => vec![800.0, 640.0, 480.0, -0.03],
+            CameraModel::Radial | CameraModel::RadialFisheye => vec![800.0, 640.0, 480.0, -0.03, 0.004],
+            CameraModel::Opencv => vec![800.0, 810.0, 640.0, 480.0, -0.03, 0.004, 1e-3, -2e-3],
+            CameraModel::OpencvFisheye => vec![800.0, 810.0, 640.0, 480.0, -0.01, 0.002, 1e-3, -1e-4],
+            CameraModel::FullOpencv => {
+                vec![800.0, 810.0, 640.0, 480.0, -0.03, 0.004, 1e-3, -2e-3, 1e-3, 0.01, -0.002, 1e-3]
+            }
+            CameraModel::Fov => vec![800.0, 810.0, 640.0, 480.0, 0.7],
+            CameraModel::ThinPrismFisheye => {
+                vec![800.0, 810.0, 640.0, 480.0, -0.01, 0.002, 1e-3, -2e-3, 1e-3, 1e-4, 1e-3, -1e-3]
+            }
+            CameraModel::RadTanThinPrismFisheye => {
+                let mut params = vec![800.0, 810.0, 640.0, 480.0];
+                params.extend([-0.01, 0.002, 1e-3, 1e-4, -1e-4, 1e-5, 1e-3, -1e-3, 1e-3, -1e-4, 1e-3, 1e-4]);
+                params
+            }
+            CameraModel::SimpleDivision => vec![800.0, 640.0, 480.0, -0.1],
+            CameraModel::Division => vec![800.0, 810.0, 640.0, 480.0, -0.1],
+            CameraModel::Eucm => vec![800.0, 810.0, 640.0, 480.0, 0.6, 1.1],
+            CameraModel::Equirectangular => vec![1280.0, 960.0],
+        }
+    };
+    let camera = |model| Camera { model, width_px: 1280, height_px: 960, params: extra(model) };
+    CameraModel::ALL.into_iter().map(camera).collect()
+}
+
+#[test]
+fn the_ray_of_a_pixel_leads_to_what_is_seen_there_in_every_model() {
+    for camera in usual_cameras() {
+        for k in 0..400 {
+            let (column, row) = (f64::from(k % 20), f64::from(k / 20));
+            let pixel = [32.0 + 64.0 * column, 24.0 + 48.0 * row];
+            let ray = camera.ray(pixel).unwrap_or_else(|| panic!("{:?} sees nothing at {pixel:?}", camera.model));
+            for distance in [0.5, 40.0] {
+                let [x, y] = camera.project(&Point3::from(ray.into_inner() * distance)).unwrap();
+                let miss = (x - pixel[0]).hypot(y - pixel[1]);
+                assert!(miss < 1e-5, "{:?} at {pixel:?}: {miss}", camera.model);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wrong_number_of_parameters_is_no_lens() {
+    for camera in usual_cameras() {
+        let ahead = Point3::new(0.1, 0.2, 2.0);
+        assert!(camera.project(&ahead).is_some(), "{:?}", camera.model);
+        let mut longer = camera.clone();
+        longer.params.push(0.0);
+        let mut shorter = camera.clone();
+        shorter.params.pop();
+        for wrong in [longer, shorter] {
+            assert!(wrong.project(&ahead).is_none() && wrong.ray([600.0, 400.0]).is_none(), "{:?}", camera.model);
+            assert!(wrong.focal_px().is_none());
+        }
+    }
+}
+
+#[test]
+fn ids_of_models_lead_back_to_them() {
+    for model in CameraModel::ALL {
+        assert_eq!(CameraModel::from_colmap_id(model.colmap_id()), Some(model));
+    }
+    assert_eq!(CameraModel::from_colmap_id(-1), None);
+    assert_eq!(CameraModel::from_colmap_id(CameraModel::ALL.len() as i32), None);
+}

@@ -69,3 +69,49 @@ proptest! {
         prop_assert!(found == nearest || (found - nearest).abs() < 1e-6, "{} {}", found, nearest);
     }
 }
+
+/// Height of the highest triangle over a place, by barycentric coordinates seen from above.
+fn naive_height(triangles: &[[Point3<f64>; 3]], x: f64, y: f64) -> Option<f64> {
+    let over = |[a, b, c]: &[Point3<f64>; 3]| {
+        let area =
+            |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+        let [a2, b2, c2] = [a, b, c].map(|p| [p.x, p.y]);
+        let whole = area(a2, b2, c2);
+        let shares = [area([x, y], b2, c2), area(a2, [x, y], c2), area(a2, b2, [x, y])].map(|part| part / whole);
+        let inside = shares.iter().all(|share| *share >= 0.0);
+        inside.then(|| shares[0] * a.z + shares[1] * b.z + shares[2] * c.z)
+    };
+    triangles.iter().filter_map(over).reduce(f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(16), failure_persistence: None, ..ProptestConfig::with_cases(300) })]
+
+    #[test]
+    fn a_ray_from_above_ends_at_the_height_of_the_highest_triangle(
+        triangles in prop::collection::vec(prop::array::uniform3(point()), 1..30),
+        x in -5.0..5.0f64,
+        y in -5.0..5.0f64,
+    ) {
+        let rays = RayCaster::new(triangles.iter().copied());
+        let hit = rays.first_hit(&Point3::new(x, y, 9.0), &-Vector3::z(), f64::INFINITY).map(|hit| 9.0 - hit.distance);
+        match (hit, naive_height(&triangles, x, y)) {
+            (Some(found), Some(expected)) => prop_assert!((found - expected).abs() < 1e-6, "{} {}", found, expected),
+            (found, expected) => prop_assert_eq!(found, expected),
+        }
+    }
+
+    #[test]
+    fn what_is_not_counted_is_as_if_it_were_not_there(
+        triangles in prop::collection::vec(prop::array::uniform3(point()), 1..30),
+        from in point(),
+        towards in point(),
+    ) {
+        let direction = (towards - from).normalize();
+        let rays = RayCaster::new(triangles.iter().copied());
+        let even: Vec<_> = triangles.iter().copied().step_by(2).collect();
+        let some = rays.first_hit_of(|triangle| triangle % 2 == 0, &from, &direction, 20.0);
+        let alone = RayCaster::new(even.into_iter()).first_hit(&from, &direction, 20.0);
+        prop_assert_eq!(some.map(|hit| (hit.distance, hit.triangle / 2)), alone.map(|hit| (hit.distance, hit.triangle)));
+    }
+}

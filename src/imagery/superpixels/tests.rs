@@ -56,3 +56,58 @@ fn tiny_and_empty_pictures_are_cut_too() {
         assert_eq!(map.labels.len(), (width * height) as usize);
     }
 }
+
+/// The superpixels of a picture with blotches, and its size.
+fn blotches(count: usize, keypoints: &[(f64, f64)]) -> LabelMap {
+    let photo = RgbImage::from_fn(150, 110, |x, y| {
+        let tone = |k: u32| ((x / 23 * 7 + y / 19 * k + (x * y) % 3) * 31 % 200) as u8;
+        image::Rgb([tone(3), tone(5), tone(11)])
+    });
+    cut_superpixels(&photo, keypoints, &SuperpixelOptions { count, ..SuperpixelOptions::default() })
+}
+
+#[test]
+fn superpixels_hang_together() {
+    for count in [2, 9, 40] {
+        let map = blotches(count, &[(20.0, 30.0), (90.0, 80.0)]);
+        let labels: Vec<u32> = map.labels.iter().collect();
+        let (width, height) = (map.width as usize, map.height as usize);
+        let mut seen = vec![false; labels.len()];
+        let mut pieces = 0;
+        for first in 0..labels.len() {
+            if seen[first] {
+                continue;
+            }
+            pieces += 1;
+            let mut open = vec![first];
+            while let Some(at) = open.pop() {
+                if seen[at] || labels[at] != labels[first] {
+                    continue;
+                }
+                seen[at] = true;
+                let (x, y) = (at % width, at / width);
+                open.extend((x > 0).then(|| at - 1));
+                open.extend((x + 1 < width).then_some(at + 1));
+                open.extend((y > 0).then(|| at - width));
+                open.extend((y + 1 < height).then_some(at + width));
+            }
+        }
+        assert_eq!(pieces, count);
+    }
+}
+
+#[test]
+fn fewer_superpixels_are_unions_of_more() {
+    let (few, many) = (blotches(6, &[]), blotches(25, &[]));
+    let mut whole = std::collections::BTreeMap::new();
+    for (small, large) in many.labels.iter().zip(few.labels.iter()) {
+        assert_eq!(*whole.entry(small).or_insert(large), large, "superpixel {small} is in two");
+    }
+    assert_eq!(whole.len(), 25);
+}
+
+#[test]
+fn the_same_photograph_has_the_same_superpixels_and_keypoints_outside_change_nothing() {
+    assert_eq!(blotches(12, &[]), blotches(12, &[]));
+    assert_eq!(blotches(12, &[(-1.0, 5.0), (1e9, 5.0), (f64::NAN, 5.0)]), blotches(12, &[]));
+}

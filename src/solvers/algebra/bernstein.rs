@@ -102,18 +102,4 @@ const fn from_powers() -> [[f64; 9]; 9] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_ends_of_an_interval_are_its_outer_coefficients() {
-        let c = [0.3, -1.0, 2.0, 0.5, -0.7, 1.1, -2.0, 0.4, 0.9];
-        let at = |t: f64| c.iter().rev().fold(0.0, |sum, c| sum * t + c);
-        let (left, right) = halves(&Interval::whole(&c));
-        for (coefficient, t) in
-            [(left.bernstein[0], -1.0), (left.bernstein[8], 0.0), (right.bernstein[0], 0.0), (right.bernstein[8], 1.0)]
-        {
-            assert!((coefficient - at(t)).abs() < 1e-14);
-        }
-    }
-}
+mod tests;

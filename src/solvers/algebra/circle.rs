@@ -33,25 +33,4 @@ pub fn on_circle(a: f64, b: f64, g: f64, size_sq: f64) -> ([[f64; 2]; 2], usize)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn finds_both_angles_of_a_line_through_the_circle() {
-        let (points, len) = on_circle(3.0, -4.0, 2.5, 25.0);
-        assert_eq!(len, 2);
-        for [c, s] in points {
-            assert!((3.0 * c - 4.0 * s + 2.5).abs() < 1e-15);
-            assert!((c * c + s * s - 1.0).abs() < 1e-15);
-        }
-    }
-
-    #[test]
-    fn a_tangent_gives_one_point_and_a_line_beside_the_circle_none() {
-        let (points, len) = on_circle(3.0, 4.0, 5.0, 25.0);
-        assert_eq!((points[0], len), ([-0.6, -0.8], 1));
-        assert_eq!(on_circle(3.0, 4.0, 5.1, 25.0).1, 0);
-        assert_eq!(on_circle(1e-14, 0.0, 0.0, 1.0).1, 0);
-        assert_eq!(on_circle(f64::NAN, 4.0, 5.0, 25.0).1, 0);
-    }
-}
+mod tests;

@@ -82,19 +82,4 @@ pub fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_form_of_a_row_is_n_r_p() {
-        let q = [0.5, -0.1, 0.7, 0.5];
-        let (n, p) = (Vector3::new(0.2, -0.5, 1.1), Vector3::new(3.0, 0.4, -2.0));
-        assert!((value(&form(&n, &p), &q) - n.dot(&(rotation(&q) * p))).abs() < 1e-15);
-    }
-
-    #[test]
-    fn the_product_of_quaternions_is_the_product_of_rotations() {
-        let (a, b) = ([0.5, -0.1, 0.7, 0.5], [0.1, 0.9, -0.3, 0.2]);
-        assert!((rotation(&product(&a, &b)) - rotation(&a) * rotation(&b)).norm() < 1e-15);
-    }
-}
+mod tests;

@@ -92,27 +92,4 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_smallest_singular_value_keeps_its_digits() {
-        // Orthogonal columns of lengths 3, 1e-9 and 2, mixed by a rotation in the plane of the first two.
-        let (c, s) = (0.6, 0.8);
-        let rows = [[3.0 * c, -3.0 * s, 0.0], [1e-9 * s, 1e-9 * c, 0.0], [0.0, 0.0, 2.0], [0.0, 0.0, 0.0]];
-        let sorted = Singular::of(&rows).sorted();
-        assert!((sorted[0] - 3.0).abs() < 1e-15 && (sorted[1] - 2.0).abs() < 1e-15);
-        assert!((sorted[2] / 1e-9 - 1.0).abs() < 1e-6, "{sorted:?}");
-    }
-
-    #[test]
-    fn least_squares_leaves_a_residual_orthogonal_to_the_columns() {
-        let rows = [[1.0, 2.0], [3.0, -1.0], [0.5, 0.25], [2.0, 2.0]];
-        let b = [1.0, 2.0, 3.0, 4.0];
-        let x = Singular::of(&rows).least_squares(&b, 1e-13);
-        for j in 0..2 {
-            let slope: f64 = rows.iter().zip(b).map(|(row, b)| row[j] * (row[0] * x[0] + row[1] * x[1] - b)).sum();
-            assert!(slope.abs() < 1e-14);
-        }
-    }
-}
+mod tests;

@@ -32,3 +32,6 @@ pub(super) fn median_point<'a>(points: impl Iterator<Item = &'a Point3<f64>> + C
     }
     Some(center)
 }
+
+#[cfg(test)]
+mod tests;

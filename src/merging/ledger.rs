@@ -115,3 +115,6 @@ fn counts(sfm: &Reconstruction) -> [usize; 3] {
     let linked = sfm.images.iter().map(|i| i.observations.iter().filter(|o| o.point.is_some()).count()).sum();
     [sfm.images.len(), sfm.points.len(), linked]
 }
+
+#[cfg(test)]
+mod tests;

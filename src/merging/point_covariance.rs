@@ -47,3 +47,6 @@ pub(super) fn covariance(
     }
     information.try_inverse().unwrap_or_else(|| Matrix3::identity() * radius.powi(2))
 }
+
+#[cfg(test)]
+mod tests;

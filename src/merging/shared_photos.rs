@@ -91,20 +91,4 @@ impl PixelMap {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(x_px: f64, y_px: f64) -> Observation {
-        Observation { x_px, y_px, point: None }
-    }
-
-    #[test]
-    fn links_each_keypoint_to_its_nearest_once() {
-        let a = [at(10.0, 10.0), at(50.0, 50.0)];
-        let b = [at(5.2, 5.0), at(5.4, 5.1), at(25.0, 25.0), at(90.0, 1.0)];
-        let pixels = PixelMap { scale: [2.0, 2.0], shift: [0.0, 0.0], tolerance: 1.4 };
-        assert_eq!(pixels.same_keypoints(&a, &b, &|_| true), [(0, 0), (1, 2)]);
-        let shifted = PixelMap { shift: [9.0, 0.0], ..pixels };
-        assert!(shifted.same_keypoints(&a, &b, &|_| true).is_empty());
-    }
-}
+mod tests;

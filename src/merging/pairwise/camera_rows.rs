@@ -66,3 +66,6 @@ impl Rows for CameraRows<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -121,3 +121,6 @@ impl Source for PointRows<'_> {
         self.bend = bend;
     }
 }
+
+#[cfg(test)]
+mod tests;

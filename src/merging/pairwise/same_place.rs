@@ -18,3 +18,6 @@ impl SamePlace<'_> {
             && (one.scale / other.scale).ln().abs() < self.limits.same_log_scale
     }
 }
+
+#[cfg(test)]
+mod tests;

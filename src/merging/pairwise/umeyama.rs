@@ -43,22 +43,4 @@ pub(super) fn umeyama(couples: &[(Point3<f64>, Point3<f64>)]) -> Option<Similari
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn three_couples_fix_a_similarity() {
-        let truth = Similarity {
-            scale: 1.7,
-            rotation: Rotation3::from_euler_angles(0.4, 2.0, -1.0),
-            translation: Vector3::new(3.0, -8.0, 1.0),
-        };
-        let couples = [0.0, 3.0, 7.0].map(|t: f64| {
-            let in_b = Point3::new((t * 0.7).sin() * 4.0, (t * 1.3).cos() * 3.0, (t * 0.31).sin() * 2.0);
-            (truth.apply(&in_b), in_b)
-        });
-        let found = umeyama(&couples).unwrap();
-        assert!((found.scale - 1.7).abs() < 1e-12 && (found.translation - truth.translation).norm() < 1e-11);
-        assert!(umeyama(&[couples[0], couples[0], couples[1]]).is_none());
-    }
-}
+mod tests;

@@ -30,3 +30,6 @@ impl Mover {
         self.rotation * p.normal
     }
 }
+
+#[cfg(test)]
+mod tests;

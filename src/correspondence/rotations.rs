@@ -26,3 +26,6 @@ pub(super) fn bisectors(a: &Vector3<f64>, b: &Vector3<f64>) -> Option<Matrix3<f6
     let (sum, difference) = ((a + b).try_normalize(SMALLEST_BISECTOR)?, (a - b).try_normalize(SMALLEST_BISECTOR)?);
     Some(Matrix3::from_columns(&[sum, difference, sum.cross(&difference)]))
 }
+
+#[cfg(test)]
+mod tests;

@@ -42,3 +42,6 @@ impl<T> Choice<T> {
         self.taken.map(|what| Drawn { what, chance })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -47,3 +47,6 @@ fn cameras_in_rigs(part: &Reconstruction) -> BTreeSet<u32> {
     let sensors = rigs.flat_map(|rig| rig.reference.into_iter().chain(rig.others.iter().map(|(s, _)| *s)));
     sensors.filter(|s| s.kind == SENSOR_CAMERA).map(|s| s.id).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -115,3 +115,6 @@ impl PointSets<'_> {
         Point3::from(information.try_inverse().map_or_else(Vector3::zeros, |covariance| covariance * sum))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -103,3 +103,6 @@ impl Adjustment<'_> {
         held
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -163,3 +163,6 @@ impl Network<'_> {
         moved.norm() > self.limits.same_place() * radius
     }
 }
+
+#[cfg(test)]
+mod tests;

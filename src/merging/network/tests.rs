@@ -10,7 +10,7 @@ use crate::robust::{Matrix7, MotionParameters};
 use crate::verdict::Verdict;
 
 /// A cloud of radius about one, the same in the world for all parts.
-fn part(k: usize) -> Part {
+pub(super) fn part(k: usize) -> Part {
     let wave = |i: usize, step: f64| 2.0 * (i as f64 * step).fract() - 1.0;
     let x = |i: usize| Point3::new(wave(i, 0.754_877_666), wave(i, 0.569_840_291), wave(i, 0.381_966));
     let points = (0..100 + k).map(|i| world_from_part(k).inverse().apply(&x(i))).collect();
@@ -18,7 +18,7 @@ fn part(k: usize) -> Part {
     Part { name: format!("part {k}"), sfm, superpixels: None, anchor: None }
 }
 
-fn world_from_part(k: usize) -> Similarity {
+pub(super) fn world_from_part(k: usize) -> Similarity {
     let t = k as f64;
     Similarity {
         scale: 1.0 + 0.3 * t,
@@ -27,7 +27,7 @@ fn world_from_part(k: usize) -> Similarity {
     }
 }
 
-fn pair(a: usize, b: usize, inliers: usize, error: &Similarity) -> Pair {
+pub(super) fn pair(a: usize, b: usize, inliers: usize, error: &Similarity) -> Pair {
     let edge = Edge {
         a,
         b,
@@ -54,7 +54,7 @@ fn pair(a: usize, b: usize, inliers: usize, error: &Similarity) -> Pair {
     Pair { edge, fit: Some(fit), decision: PairDecision::Accepted }
 }
 
-fn shifted(along_x: f64) -> Similarity {
+pub(super) fn shifted(along_x: f64) -> Similarity {
     Similarity { translation: Vector3::new(along_x, 0.0, 0.0), ..Similarity::identity() }
 }
 

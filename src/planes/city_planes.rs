@@ -155,3 +155,6 @@ impl<'a> Merger<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -96,3 +96,6 @@ fn places([a, b, c]: &[Point3<f64>; 3], large_m2: f64) -> Vec<Point3<f64>> {
         vec![at(0.7, 0.15, 0.15), at(0.15, 0.7, 0.15), at(0.15, 0.15, 0.7)]
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -111,35 +111,4 @@ fn triples(count: usize) -> Vec<[usize; 3]> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn tilted(u: f64, v: f64, off: f64) -> Point3<f64> {
-        let n = Vector3::new(1.0, 2.0, 2.0) / 3.0;
-        let a = Vector3::new(2.0, -2.0, 1.0) / 3.0;
-        Point3::new(10.0, -4.0, 3.0) + a * u + n.cross(&a) * v + n * off
-    }
-
-    #[test]
-    fn finds_the_plane_of_exact_points() {
-        let points = [tilted(0.0, 0.0, 0.0), tilted(4.0, 0.0, 0.0), tilted(0.0, 1.0, 0.0), tilted(4.0, 1.0, 0.0)];
-        let fit = fit_plane(points.iter().copied()).unwrap();
-        assert!(fit.plane.normal.cross(&Vector3::new(1.0, 2.0, 2.0)).norm() < 1e-12);
-        assert!(fit.rms < 1e-7 && (fit.spread[0] - 2.0).abs() < 1e-12 && (fit.spread[1] - 0.5).abs() < 1e-12);
-    }
-
-    #[test]
-    fn gives_nothing_for_points_on_a_line() {
-        assert!(fit_plane((0..5).map(|i| tilted(i as f64, 0.0, 0.0))).is_none());
-        assert!(fit_plane((0..5).map(|_| tilted(1.0, 1.0, 0.0))).is_none());
-    }
-
-    #[test]
-    fn leaves_out_points_off_the_plane() {
-        let mut points: Vec<_> = (0..20).map(|i| tilted(f64::from(i % 5), f64::from(i / 5), 0.0)).collect();
-        points.extend((0..9).map(|i| tilted(f64::from(i), 2.0, 1.0 + f64::from(i))));
-        let (fit, inside) = fit_plane_robustly(&points, 0.05).unwrap();
-        assert_eq!(inside, (0..20).collect::<Vec<_>>());
-        assert!(fit.rms < 1e-7);
-    }
-}
+mod tests;

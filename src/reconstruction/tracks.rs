@@ -135,3 +135,6 @@ fn warn_of_contradictions(
         example.unwrap_or_else(|| "keypoints whose points' tracks lack them".to_string())
     });
 }
+
+#[cfg(test)]
+mod tests;

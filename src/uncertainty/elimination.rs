@@ -39,30 +39,4 @@ pub(super) fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::robust::Random;
-
-    #[test]
-    fn what_is_left_is_what_least_squares_with_the_dense_covariance_says() {
-        let mut random = Random::stream(5, 0);
-        let mut draw = |rows: usize, columns: usize| DMatrix::from_fn(rows, columns, |_, _| 2.0 * random.unit() - 1.0);
-        for (rows, keep, taken, sigma, spread) in [(40, 3, 2, 0.2, 0.1), (25, 5, 4, 0.05, 3.0), (9, 1, 3, 1.0, 1e-3)] {
-            let (kept, gone) = (draw(rows, keep), draw(rows, taken));
-            let both =
-                DMatrix::from_fn(rows, keep + taken, |i, j| if j < keep { kept[(i, j)] } else { gone[(i, j - keep)] });
-            let equations = both.transpose() * &both / (sigma * sigma);
-            let found = eliminate(&equations, keep, 1.0 / f64::powi(spread, 2)).rest;
-            // Errors of the rows are noise and what the unknowns that were taken out put into them.
-            let covariance =
-                DMatrix::identity(rows, rows) * (sigma * sigma) + &gone * gone.transpose() * (spread * spread);
-            let expected = kept.transpose() * inverse(covariance) * &kept;
-            assert!((&found - &expected).norm() < 1e-9 * expected.norm(), "{found} {expected}");
-        }
-    }
-
-    #[test]
-    fn what_nothing_is_known_of_has_no_covariance_to_hand_on() {
-        assert_eq!(inverse(DMatrix::zeros(3, 3)), DMatrix::zeros(3, 3));
-    }
-}
+mod tests;

@@ -54,7 +54,7 @@ impl System<'_> {
     }
 
     /// A building's shift and turn, the joint covariance of the common unknowns and these, and their expected square.
-    fn building_found(&self, b: usize) -> (DVector<f64>, DMatrix<f64>, f64) {
+    pub(super) fn building_found(&self, b: usize) -> (DVector<f64>, DMatrix<f64>, f64) {
         let (n, own) = (self.common, &self.parts[b].building);
         let coupling = own.coupling.rows(0, n);
         let pull = own.coupling.row(n).transpose() + coupling.transpose() * &self.found;
@@ -72,7 +72,7 @@ impl System<'_> {
     }
 
     /// A building plane's offset and tilts, and their expected square.
-    fn building_plane_found(
+    pub(super) fn building_plane_found(
         &self,
         b: usize,
         k: usize,
@@ -130,3 +130,6 @@ impl Squares {
 fn weight(squared: f64, parts: usize, student_dof: f64) -> f64 {
     (student_dof + parts as f64) / (student_dof + squared)
 }
+
+#[cfg(test)]
+mod tests;

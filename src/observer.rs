@@ -66,3 +66,6 @@ pub struct Cancelled;
 pub fn check_cancelled(observer: &dyn Observer) -> Result<(), Cancelled> {
     if observer.is_cancelled() { Err(Cancelled) } else { Ok(()) }
 }
+
+#[cfg(test)]
+mod tests;

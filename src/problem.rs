@@ -115,3 +115,6 @@ fn solution_json(solution: &Solution) -> Value {
         "condition": solution.condition,
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -66,3 +66,6 @@ impl AlignOptions {
         AlignOptions { seed, ..self }
     }
 }
+
+#[cfg(test)]
+mod tests;

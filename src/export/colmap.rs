@@ -134,3 +134,6 @@ fn camera_records(r: &Reconstruction) -> Vec<CameraRecord> {
     });
     cameras.collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -90,3 +90,6 @@ pub(super) fn is_closed(indices: &[u32]) -> bool {
     balance.sort_unstable();
     balance.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|edge| edge.iter().map(|e| e.2).sum::<i32>() == 0)
 }
+
+#[cfg(test)]
+mod tests;

@@ -101,3 +101,6 @@ fn camera_pose(image: &Image, city_from_sfm: &Similarity) -> (UnitQuaternion, Po
     let q = crate::geometry::UnitQuaternion::from_rotation_matrix(&gltf_from_cam);
     (UnitQuaternion([q.i as f32, q.j as f32, q.k as f32, q.w as f32]), city_from_sfm.apply(&center_in_sfm))
 }
+
+#[cfg(test)]
+mod tests;

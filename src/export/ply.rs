@@ -47,3 +47,6 @@ pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), Exp
 fn declare(out: &mut BufWriter<std::fs::File>, kind: &str, names: &[&str]) -> Result<()> {
     names.iter().try_for_each(|name| writeln!(out, "property {kind} {name}"))
 }
+
+#[cfg(test)]
+mod tests;

@@ -54,3 +54,6 @@ pub(super) fn linear(srgb: [u8; 3]) -> [u16; 4] {
     });
     [r, g, b, u16::MAX]
 }
+
+#[cfg(test)]
+mod tests;

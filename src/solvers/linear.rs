@@ -63,38 +63,4 @@ pub fn linear_least_squares(rows: &[Row]) -> Option<LinearFit> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::solvers::scene::{Random, angle_between_rad, sample};
-    use crate::solvers::{Sought, refine};
-
-    #[test]
-    fn twelve_points_on_four_planes_give_the_pose_and_three_planes_give_rank_nine() {
-        let mut random = Random::stream(4, 0);
-        let case = sample(&mut random, &Sought::Rigid, &[3, 3, 3, 3]);
-        let fit = linear_least_squares(&case.rows).unwrap();
-        assert_eq!(fit.rank, 12);
-        assert!(angle_between_rad(&fit.object_from_sensor.rotation, &case.truth.rotation) < 1e-9);
-        for points in [4, 7] {
-            let case = sample(&mut random, &Sought::Rigid, &[points; 3]);
-            assert_eq!(linear_least_squares(&case.rows).unwrap().rank, 9);
-        }
-    }
-
-    #[test]
-    fn refining_a_noisy_linear_pose_lowers_the_residual() {
-        let mut random = Random::stream(5, 0);
-        let mut case = sample(&mut random, &Sought::Rigid, &[5, 5, 5, 5]);
-        for row in &mut case.rows {
-            row.point += random.normal_vector();
-        }
-        let sum = |pose: &Similarity| -> f64 {
-            case.rows.iter().map(|r| (r.normal.dot(&pose.apply(&r.point.into()).coords) + r.offset).powi(2)).sum()
-        };
-        let linear = linear_least_squares(&case.rows).unwrap().object_from_sensor;
-        let refined = refine(&Sought::Rigid, &case.rows, &linear).unwrap();
-        assert!(sum(&refined) < sum(&linear));
-        let again = refine(&Sought::Rigid, &case.rows, &refined).unwrap();
-        assert!((again.rotation.matrix() - refined.rotation.matrix()).norm() < 1e-8);
-    }
-}
+mod tests;

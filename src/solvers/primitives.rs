@@ -168,3 +168,6 @@ fn length(v: &Vector3<f64>) -> f64 {
     let largest = v.amax();
     if largest > 0.0 { largest * (v / largest).norm() } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests;

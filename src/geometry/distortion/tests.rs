@@ -5,8 +5,8 @@ use proptest::test_runner::RngSeed;
 fn distortion() -> impl Strategy<Value = Distortion> {
     let few = |most: f64| -most..most;
     (
-        prop::array::uniform6(few(0.02)),
-        prop::array::uniform3(few(0.02)),
+        prop::array::uniform6(few(0.01)),
+        prop::array::uniform3(few(0.01)),
         prop::array::uniform2(few(0.005)),
         prop::array::uniform4(few(0.005)),
         prop::bool::ANY,
@@ -24,7 +24,7 @@ proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(15), failure_persistence: None, ..ProptestConfig::with_cases(300) })]
 
     #[test]
-    fn the_derivative_is_that_of_small_steps(d in distortion(), p in prop::array::uniform2(-0.8..0.8f64)) {
+    fn the_derivative_is_that_of_small_steps(d in distortion(), p in prop::array::uniform2(-0.5..0.5f64)) {
         let p = Vector2::from(p);
         let (_, derivative) = d.apply(p).unwrap();
         let step = 1e-6;
@@ -37,7 +37,7 @@ proptest! {
     }
 
     #[test]
-    fn inversion_finds_the_point_that_was_distorted(d in distortion(), p in prop::array::uniform2(-0.8..0.8f64)) {
+    fn inversion_finds_the_point_that_was_distorted(d in distortion(), p in prop::array::uniform2(-0.5..0.5f64)) {
         let p = Vector2::from(p);
         let (q, _) = d.apply(p).unwrap();
         let found = d.invert(q).unwrap();

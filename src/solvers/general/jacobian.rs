@@ -50,3 +50,6 @@ pub fn turn_and_stretch(sought: &Sought, unknowns: &[f64]) -> (Vector3<f64>, f64
     let stretch = if sought.is_similarity() { unknowns[sought.unknowns() - 1] } else { 0.0 };
     (turn, stretch)
 }
+
+#[cfg(test)]
+mod tests;

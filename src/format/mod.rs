@@ -12,7 +12,7 @@ mod problem;
 pub mod ply;
 mod ply_row;
 mod start;
-mod surfaces;
+pub mod surfaces;
 mod text;
 
 pub use alignment::{StoredAlignment, read_alignment};

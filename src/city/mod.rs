@@ -1,11 +1,14 @@
 //! The city model: polygons with their objects, in metres, z up, about a local origin.
 //!
-//! [`read_city`] takes OBJ, glTF and GLB files into one [`CityModel`]. What such files usually have wrong is tolerated
+//! [`read_city`] takes OBJ, glTF, GLB and CityJSON files into one [`CityModel`]. What such files usually have wrong is tolerated
 //! and counted in [`CityModel::warnings`]; what leaves no honest model is a [`CityError`].
 
 mod build;
+mod contents;
 mod facet;
+mod from_surfaces;
 mod join;
+mod levels;
 mod model;
 mod orientation;
 mod origin;
@@ -21,6 +24,9 @@ mod triangulate;
 mod validate;
 mod warning;
 
+pub use crate::format::surfaces::{Lod, SurfaceKind};
+pub use contents::{CityContents, KindCounts};
+pub use levels::CityLod;
 pub use model::{CityModel, CityRole, CitySource, Facet, FacetId, ObjectId};
 pub use read::{CityError, CityOptions, CityUp, read_city};
 pub use warning::{CityDefect, CityPlace, CityWarning};

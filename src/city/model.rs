@@ -3,7 +3,9 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
+use super::CityContents;
 use super::warning::CityWarning;
+use crate::format::surfaces::SurfaceKind;
 use crate::geometry::{Plane, Point3, Vector3};
 
 /// Index into [`CityModel::facets`].
@@ -35,13 +37,17 @@ pub struct CityModel {
 /// One polygon of the model, or one triangle where the file has only triangles.
 #[derive(Clone, Debug)]
 pub struct Facet {
-    /// Outline as vertex indices, counter-clockwise seen from outside; holes are bridged or triangulated away.
+    /// Outline as vertex indices, counter-clockwise seen from outside.
     pub outline: Vec<u32>,
+    /// Holes in it, clockwise seen from outside.
+    pub holes: Vec<Vec<u32>>,
     /// Newell plane through the outline's centroid; the normal is the outward side by winding.
     pub plane: Plane,
     /// Square metres, of the triangulation.
     pub area: f64,
     pub object: ObjectId,
+    /// What it is of its object, where the file says.
+    pub kind: Option<SurfaceKind>,
     /// Range in [`CityModel::triangles`].
     pub triangles: Range<u32>,
 }
@@ -57,6 +63,8 @@ pub struct CitySource {
     pub objects: Range<u32>,
     /// How finely the file's coordinates are written, metres.
     pub precision_m: f64,
+    /// What the file holds, before levels of detail were chosen.
+    pub contents: CityContents,
 }
 
 /// What a file is for.
@@ -65,6 +73,13 @@ pub enum CityRole {
     City,
     /// A surface that is open by its nature.
     Terrain,
+}
+
+impl Facet {
+    /// The outline, then the holes.
+    pub fn rings(&self) -> impl Iterator<Item = &[u32]> {
+        std::iter::once(&self.outline).chain(&self.holes).map(Vec::as_slice)
+    }
 }
 
 impl CityModel {

@@ -4,9 +4,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::build::build;
+use super::levels::choose;
 use super::recognise::{Format, recognise};
 use super::source::Source;
-use super::{CityModel, CityRole};
+use super::{CityLod, CityModel, CityRole};
+use crate::format::cityjson::{self, CityJsonError};
 use crate::format::escaped;
 use crate::format::file::{LARGEST_MODEL_BYTES, read_regular};
 use crate::format::gltf::{self, GltfError};
@@ -17,6 +19,8 @@ use crate::format::obj::{self, ObjError};
 pub struct CityOptions {
     /// Which axis of OBJ files points up; glTF is y up by its standard.
     pub up: CityUp,
+    /// Which level of detail is taken, where a file has several.
+    pub lod: CityLod,
 }
 
 /// The axis that points up.
@@ -31,13 +35,15 @@ pub enum CityUp {
 /// Why files are no city.
 #[derive(Debug, thiserror::Error)]
 pub enum CityError {
-    #[error("cannot read the file: {reason}; expected an OBJ, glTF or GLB file ({})", path.display())]
+    #[error("cannot read the file: {reason}; expected an OBJ, glTF, GLB or CityJSON file ({})", path.display())]
     Unreadable { path: PathBuf, reason: io::Error },
     #[error("{} ({})", escaped(&error.to_string()), escaped(&obj_place(path, error)))]
     Obj { path: PathBuf, error: ObjError },
     #[error("{} ({})", escaped(&error.to_string()), escaped(&gltf_place(path, error)))]
     Gltf { path: PathBuf, error: Box<GltfError> },
-    #[error("{found}, expected an OBJ, glTF or GLB file; {remedy} ({})", path.display())]
+    #[error("{} ({})", escaped(&error.to_string()), escaped(&cityjson_place(path, error)))]
+    CityJson { path: PathBuf, error: Box<CityJsonError> },
+    #[error("{found}, expected an OBJ, glTF, GLB or CityJSON file; {remedy} ({})", path.display())]
     OtherFormat { path: PathBuf, found: &'static str, remedy: &'static str },
     #[error("the city has no faces: {found}; expected polygons (`f` lines, or triangles of a mesh) ({})", path.display())]
     NoFaces { path: PathBuf, found: String },
@@ -68,6 +74,11 @@ fn gltf_place(path: &Path, error: &GltfError) -> String {
     format!("{object}{place}{}", path.display())
 }
 
+fn cityjson_place(path: &Path, error: &CityJsonError) -> String {
+    let object = error.object.as_ref().map_or(String::new(), |name| format!("object {name}, "));
+    format!("{object}{}:{}:{}", path.display(), error.line, error.column)
+}
+
 /// Reads CITY and further meshes (terrain) into one model with one common origin.
 pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Result<CityModel, CityError> {
     let mut sources = vec![read_source(city, CityRole::City, options)?];
@@ -86,6 +97,13 @@ fn read_source(path: &Path, role: CityRole, options: &CityOptions) -> Result<Sou
             let file = gltf::read_gltf(&bytes, folder);
             let file = file.map_err(|error| CityError::Gltf { path: path.to_owned(), error: Box::new(error) })?;
             Ok(Source::from_gltf(path, role, file))
+        }
+        Format::CityJson => {
+            let file = cityjson::read_cityjson(&bytes);
+            let file = file.map_err(|error| CityError::CityJson { path: path.to_owned(), error: Box::new(error) })?;
+            drop(bytes);
+            let chosen = choose(&file, options.lod, role);
+            Ok(Source::from_surfaces(path, role, file, &chosen))
         }
         Format::Obj => {
             let file = obj::read_obj(&bytes).map_err(|error| CityError::Obj { path: path.to_owned(), error })?;

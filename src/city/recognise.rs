@@ -7,6 +7,8 @@ use crate::format::gltf::is_glb;
 
 pub(super) enum Format {
     Obj,
+    /// One city, or a sequence of features.
+    CityJson,
     /// JSON or GLB; the reader tells them apart.
     Gltf,
 }
@@ -31,9 +33,7 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
         [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => return other("this is UTF-16 text", "save it as UTF-8"),
         [b'P', b'K', 3, 4, ..] => return other("this is a ZIP archive", "unpack it"),
         [0x1F, 0x8B, ..] => return other("this is a gzip archive", "unpack it"),
-        _ if text.starts_with('{') && text.contains("\"CityJSON") => {
-            return other("this is CityJSON", "convert it (cjio exports OBJ and glTF)");
-        }
+        _ if text.starts_with('{') && text.contains("\"CityJSON") => return Ok(Format::CityJson),
         _ if text.starts_with('{') => return Ok(Format::Gltf),
         _ if text.starts_with("ply") => return other("this is a PLY file", converts),
         _ if text.starts_with("solid") => return other("this is an STL file", converts),

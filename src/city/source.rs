@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::warning::{CityDefect, CityPlace, CityWarning};
-use super::{CityRole, CityUp};
+use super::{CityContents, CityRole, CityUp, SurfaceKind};
 use crate::format::gltf::GltfFile;
 use crate::format::obj::{ObjFile, ObjObject, ObjOddities};
 use crate::geometry::Point3;
@@ -33,15 +33,20 @@ pub(super) struct Source {
     pub path: PathBuf,
     pub role: CityRole,
     pub positions: Vec<Point3<f64>>,
-    /// Position indices of all faces, one face after the other.
+    /// Position indices of all faces, one face after the other, in each the outline and then its holes.
     pub corners: Vec<u32>,
     /// End of each face in `corners`.
     pub face_ends: Vec<u32>,
+    /// Face and first corner of every hole, ascending; most files have none.
+    pub holes: Vec<(u32, u32)>,
     /// Line of each face; empty where the format has no lines.
     pub face_lines: Vec<u32>,
+    /// What each face is; empty where the format does not say.
+    pub face_kinds: Vec<Option<SurfaceKind>>,
     /// Index into `objects` of each face.
     pub face_objects: Vec<u32>,
     pub objects: Vec<String>,
+    pub contents: CityContents,
     /// Whether faces of this format share vertices, so that two at one place are a defect.
     pub shares_vertices: bool,
     /// How finely coordinates are written, metres.
@@ -55,9 +60,15 @@ impl Source {
         self.face_ends.len()
     }
 
-    pub fn corners_of(&self, face: usize) -> &[u32] {
+    /// The corners of a face's outline, then of each of its holes.
+    pub fn rings_of(&self, face: usize) -> impl Iterator<Item = &[u32]> {
         let start = if face == 0 { 0 } else { self.face_ends[face - 1] };
-        &self.corners[start as usize..self.face_ends[face] as usize]
+        let first = self.holes.partition_point(|hole| (hole.0 as usize) < face);
+        let count = self.holes[first..].iter().take_while(|hole| hole.0 as usize == face).count();
+        let own = &self.holes[first..first + count];
+        let starts = std::iter::once(start).chain(own.iter().map(|hole| hole.1));
+        let ends = own.iter().map(|hole| hole.1).chain([self.face_ends[face]]);
+        starts.zip(ends).map(|(start, end)| &self.corners[start as usize..end as usize])
     }
 
     /// The face that holds the corner at this index.
@@ -83,11 +94,14 @@ impl Source {
         Source {
             path: path.to_owned(),
             role,
+            contents: CityContents::plain("OBJ", objects.len(), file.face_ends.len()),
             precision_m: written_precision(&positions, 0.0),
             positions,
             corners: file.corners,
             face_ends: file.face_ends,
+            holes: Vec::new(),
             face_lines: file.face_lines,
+            face_kinds: Vec::new(),
             face_objects,
             objects,
             shares_vertices: true,
@@ -116,9 +130,12 @@ impl Source {
             positions: Vec::new(),
             corners: Vec::with_capacity(3 * triangles),
             face_ends: (1..=triangles).map(|face| 3 * face as u32).collect(),
+            holes: Vec::new(),
             face_lines: Vec::new(),
+            face_kinds: Vec::new(),
             face_objects: Vec::with_capacity(triangles),
             objects: Vec::with_capacity(file.parts.len()),
+            contents: CityContents::plain("glTF 2.0", file.parts.len(), triangles),
             shares_vertices: false,
             precision_m: 0.0,
             warnings: if file.without_surface > 0 { vec![without_surface] } else { Vec::new() },

@@ -105,8 +105,10 @@ fn judge(model: &CityModel, facets: &[u32]) -> Shell {
 }
 
 fn edges_of(facet: &Facet) -> impl Iterator<Item = (u32, u32, bool)> + '_ {
-    let next = facet.outline.iter().cycle().skip(1);
-    facet.outline.iter().zip(next).map(|(&from, &to)| (from.min(to), from.max(to), from < to))
+    facet.rings().flat_map(|ring| {
+        let next = ring.iter().cycle().skip(1);
+        ring.iter().zip(next).map(|(&from, &to)| (from.min(to), from.max(to), from < to))
+    })
 }
 
 /// Facets that have the outline of an earlier one of the whole model, and whether that runs the other way round.
@@ -131,12 +133,17 @@ fn doubled(model: &CityModel, facets: std::ops::Range<u32>) -> Vec<(u32, bool)> 
     doubled
 }
 
-/// Equal for outlines of the same vertices in the same or the opposite order, and seldom for others.
+/// Equal for outlines of the same vertices in the same or the opposite order with as many holes, and seldom for others.
 fn key(facet: &Facet) -> [u32; 4] {
     let lowest = facet.outline.iter().copied().min().unwrap_or_default();
     let highest = facet.outline.iter().copied().max().unwrap_or_default();
     let sum = facet.outline.iter().fold(0_u32, |sum, &vertex| sum.wrapping_add(vertex));
-    [lowest, highest, sum, facet.outline.len() as u32]
+    [
+        lowest,
+        highest,
+        sum,
+        facet.rings().map(|ring| ring.len() as u32).fold(0, |all, ring| all.wrapping_mul(31).wrapping_add(ring)),
+    ]
 }
 
 /// The outline from its lowest vertex on, in the direction of the lower neighbour, and whether that is backwards.

@@ -68,6 +68,12 @@ pub enum CityDefect {
     MixedOrientation { edges: u64 },
     /// Objects with edges that only one facet has.
     OpenShell { open_edges: u64, edges: u64 },
+    /// What a reader of a format passed over, in words.
+    PassedOver { what: &'static str },
+    /// Footprints (level of detail 0) of objects that have nothing else; left out.
+    Footprints,
+    /// Polygons of objects that have nothing up to the level of detail that was asked for; left out.
+    AboveWantedLevel,
     /// The city is as wide as none is: other units than metres, or vertices that belong elsewhere.
     OddExtent { across_m: f64 },
     /// Further files so far from the city that they must be in another frame.
@@ -75,6 +81,14 @@ pub enum CityDefect {
 }
 
 impl CityDefect {
+    /// Whether both are told in one line.
+    fn is_like(&self, other: &CityDefect) -> bool {
+        match (self, other) {
+            (CityDefect::PassedOver { what }, CityDefect::PassedOver { what: other }) => what == other,
+            _ => discriminant(self) == discriminant(other),
+        }
+    }
+
     /// Takes in the figures of the same kind of defect elsewhere.
     fn merge(&mut self, other: &CityDefect) {
         match (self, other) {
@@ -110,7 +124,7 @@ pub(super) struct Warnings(Vec<CityWarning>);
 impl Warnings {
     /// Counts a defect; asks for the place only when the kind is new.
     pub fn add(&mut self, defect: CityDefect, count: u64, place: impl FnOnce() -> CityPlace) {
-        match self.0.iter_mut().find(|warning| discriminant(&warning.defect) == discriminant(&defect)) {
+        match self.0.iter_mut().find(|warning| warning.defect.is_like(&defect)) {
             _ if count == 0 => {}
             Some(warning) => {
                 warning.count += count;
@@ -165,6 +179,12 @@ impl fmt::Display for CityWarning {
                 ("object has facets whose sides disagree", "objects have facets whose sides disagree")
             }
             CityDefect::OpenShell { .. } => ("object is an open shell", "objects are open shells"),
+            CityDefect::PassedOver { what } => (what, what),
+            CityDefect::Footprints => ("polygon is the footprint of an object", "polygons are footprints of objects"),
+            CityDefect::AboveWantedLevel => (
+                "polygon is of a higher level of detail than --lod",
+                "polygons are of higher levels of detail than --lod",
+            ),
             CityDefect::OddExtent { .. } => ("city has an odd size", "cities have an odd size"),
             CityDefect::FarApart { .. } => ("file lies far from the city", "files lie far from the city"),
         };
@@ -189,6 +209,9 @@ impl fmt::Display for CityWarning {
             CityDefect::OpenShell { open_edges, edges } => {
                 write!(f, " ({open_edges} of {edges} edges belong to one facet alone), kept")?;
             }
+            CityDefect::PassedOver { .. } => write!(f, ", passed over")?,
+            CityDefect::Footprints => write!(f, " that has nothing above level of detail 0, left out")?,
+            CityDefect::AboveWantedLevel => write!(f, " wants, and its object has no lower one, left out")?,
             CityDefect::OddExtent { across_m } => {
                 write!(f, " ({across_m} m across; units must be metres, and no vertex may stray)")?;
             }

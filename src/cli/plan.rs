@@ -66,7 +66,11 @@ impl CityFiles {
             CityUpArg::Z => CityUp::Z,
             CityUpArg::Y => CityUp::Y,
         };
-        Ok(CityFiles { city: city.into(), terrain: terrain.to_vec(), options: CityOptions { up } })
+        Ok(CityFiles {
+            city: city.into(),
+            terrain: terrain.to_vec(),
+            options: CityOptions { up, ..CityOptions::default() },
+        })
     }
 
     /// City and terrain, by their names alone.

@@ -1,6 +1,7 @@
 //! Raw records as the specifications of the file formats write them, both directions.
 
 mod alignment;
+pub mod cityjson;
 pub mod colmap;
 pub mod file;
 mod escape;

@@ -8,6 +8,8 @@ pub struct SurfaceFile {
     pub format: String,
     /// The reference system, as the file spells it.
     pub crs: Option<String>,
+    /// Distance of neighbouring coordinates that the file can write, where it has one.
+    pub step: Option<f64>,
     /// File coordinates, in the file's own order of axes.
     pub positions: Vec<[f64; 3]>,
     /// Indices into `positions` of all rings, one ring after the other; the closing corner is not repeated.
@@ -18,6 +20,14 @@ pub struct SurfaceFile {
     pub objects: Vec<ObjectRecord>,
     /// What was passed over, each kind once.
     pub skipped: Vec<Skipped>,
+}
+
+impl SurfaceFile {
+    /// Indices into `positions` of one ring.
+    pub fn ring(&self, ring: u32) -> &[u32] {
+        let start = if ring == 0 { 0 } else { self.ring_ends[ring as usize - 1] };
+        &self.corners[start as usize..self.ring_ends[ring as usize] as usize]
+    }
 }
 
 /// One polygon: an outline and its holes.

@@ -87,7 +87,7 @@ fn reserve(model: &mut CityModel, chunks: &[Chunk]) -> Option<()> {
 /// What a file without a usable face holds instead.
 fn found(source: &Source) -> String {
     match source.face_count() {
-        0 => format!("{} vertices and no polygons", source.positions.len()),
+        0 => source.nothing_found(),
         1 => "one polygon, which has no area or crosses itself beyond repair".into(),
         faces => format!("{faces} polygons, all without an area or crossing themselves beyond repair"),
     }

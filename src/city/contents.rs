@@ -36,6 +36,12 @@ impl KindCounts {
         self.ground + self.roof + self.wall + self.other + self.unsaid
     }
 
+    /// Each kind by its name in files and reports.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let KindCounts { ground, roof, wall, other, unsaid } = *self;
+        [("ground", ground), ("roof", roof), ("wall", wall), ("other", other), ("unsaid", unsaid)].into_iter()
+    }
+
     fn add(&mut self, kind: Option<SurfaceKind>) {
         *match kind {
             Some(SurfaceKind::Ground) => &mut self.ground,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::frame::Frame;
 use super::levels::{Chosen, Passed};
 use super::source::{Source, written_precision};
 use super::warning::{CityDefect, CityPlace, CityWarning};
@@ -16,8 +17,8 @@ const FINEST_STEP_M: f64 = 1e-6;
 const UNUSED: u32 = u32::MAX;
 
 impl Source {
-    /// Chosen polygons of a file whose coordinates are metres, z up. What belongs to a building is named as the building.
-    pub fn from_surfaces(path: &Path, role: CityRole, file: SurfaceFile, chosen: &Chosen) -> Source {
+    /// Chosen polygons of a file, in the city's frame. What belongs to a building is named as the building.
+    pub fn from_surfaces(path: &Path, role: CityRole, file: SurfaceFile, chosen: &Chosen, frame: &Frame) -> Source {
         let contents = CityContents::of(&file);
         let warnings = warnings(path, &file, chosen);
         let mut source = Source {
@@ -56,9 +57,15 @@ impl Source {
             source.face_kinds.push(surface.kind);
             source.face_objects.push(object_of_root[root]);
         }
-        source.positions = file.positions.into_iter().map(Point3::from).collect();
-        source.precision_m =
-            file.step.map_or_else(|| written_precision(&source.positions, 0.0), |step| step.max(FINEST_STEP_M));
+        // Heights alone, where the others are computed.
+        let written = |[x, y, z]: &[f64; 3]| match frame.projection {
+            None => Point3::new(*x, *y, *z),
+            Some(_) => Point3::new(0.0, 0.0, *z),
+        };
+        let step = file.step.filter(|_| frame.projection.is_none()).map(|step| step.max(FINEST_STEP_M));
+        let precision = || written_precision(&file.positions.iter().map(written).collect::<Vec<_>>(), 0.0);
+        source.precision_m = step.unwrap_or_else(precision);
+        source.positions = file.positions.iter().map(|&position| frame.placed(position)).collect();
         source
     }
 }

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use super::CityContents;
 use super::warning::CityWarning;
+use super::{CityContents, Crs};
 use crate::format::surfaces::SurfaceKind;
 use crate::geometry::{Plane, Point3, Vector3};
 
@@ -30,6 +30,8 @@ pub struct CityModel {
     pub objects: Vec<String>,
     /// One per file, in the order in which they were given: the city, then terrain.
     pub sources: Vec<CitySource>,
+    /// The reference system of file coordinates, where one is known.
+    pub crs: Option<Crs>,
     /// What the files had wrong and was tolerated, one entry a kind.
     pub warnings: Vec<CityWarning>,
 }
@@ -87,6 +89,12 @@ impl CityModel {
     pub fn bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
         let first = *self.vertices.first()?;
         Some(self.vertices.iter().fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex))))
+    }
+
+    /// Puts what concerns the city as a whole before what its files had wrong.
+    pub(super) fn with_warnings_first(mut self, warnings: Vec<CityWarning>) -> CityModel {
+        self.warnings.splice(0..0, warnings);
+        self
     }
 
     /// The name of an object, or an empty text for an id of another model.

@@ -10,7 +10,7 @@ use crate::format::obj::{ObjFile, ObjGroup, ObjObject, write_obj};
 impl CityModel {
     /// The facets that are kept, with what they use, counted anew; same origin, no warnings.
     pub fn subset(&self, keep: impl Fn(FacetId) -> bool) -> CityModel {
-        let mut kept = CityModel { origin: self.origin, ..CityModel::default() };
+        let mut kept = CityModel { origin: self.origin, crs: self.crs.clone(), ..CityModel::default() };
         let mut vertex_of = vec![None; self.vertices.len()];
         let mut object_of = vec![None; self.objects.len()];
         // What is kept before each facet, to count the files' shares anew.

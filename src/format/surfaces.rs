@@ -1,6 +1,8 @@
 //! Polygons of a city file as it writes them: before axes, units and levels of detail are decided. CityJSON, CityGML and footprints
 //! are read into this one shape.
 
+use std::fmt;
+
 /// Everything of one file that bounds a city object.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceFile {
@@ -48,6 +50,16 @@ pub struct SurfaceRecord {
 /// Level of detail: 2.2 is (2, 2), 2 is (2, 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Lod(pub u8, pub u8);
+
+impl fmt::Display for Lod {
+    /// As files write it: 2, 2.2.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Lod(whole, 0) => write!(f, "{whole}"),
+            Lod(whole, step) => write!(f, "{whole}.{step}"),
+        }
+    }
+}
 
 /// What a polygon is of a building.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -103,3 +103,65 @@ fn order_by_range(code: u32, [first, second]: [f64; 2]) -> Option<AxisOrder> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::surfaces::SurfaceRecord;
+
+    /// A tetrahedron as one closed shell, at large coordinates.
+    fn tetrahedron() -> SurfaceFile {
+        let at = |x, y, z| [691_000.0 + x, 5_335_000.0 + y, 500.0 + z];
+        let corners = vec![0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3];
+        let surface =
+            |ring| SurfaceRecord { object: 0, first_ring: ring, ring_count: 1, lod: None, kind: None, shell: Some(0) };
+        SurfaceFile {
+            positions: vec![at(0.0, 0.0, 0.0), at(6.0, 0.0, 0.0), at(0.0, 6.0, 0.0), at(0.0, 0.0, 6.0)],
+            corners,
+            ring_ends: vec![3, 6, 9, 12],
+            surfaces: (0..4).map(surface).collect(),
+            ..SurfaceFile::default()
+        }
+    }
+
+    #[test]
+    fn the_volume_of_a_shell_has_the_sign_of_its_axes_and_no_noise_of_large_coordinates() {
+        let mut file = tetrahedron();
+        assert!((shell_volumes(&file)[0] - 36.0).abs() < 1e-6);
+        file.positions.iter_mut().for_each(|position| position.swap(0, 1));
+        assert!((shell_volumes(&file)[0] + 36.0).abs() < 1e-6);
+        let votes = vote(&[&file], None, [0.0, 0.0]);
+        assert_eq!((votes.shells, votes.negative, votes.order()), (1, 1, Some(AxisOrder::NorthFirst)));
+    }
+
+    #[test]
+    fn polygons_without_shells_tell_nothing() {
+        let mut file = tetrahedron();
+        file.surfaces.iter_mut().for_each(|surface| surface.shell = None);
+        assert_eq!(vote(&[&file], None, [0.0, 0.0]).order(), None);
+    }
+
+    #[test]
+    fn half_of_the_shells_are_not_most() {
+        let votes = |shells, negative| AxisVotes { shells, negative, by_range: None }.order();
+        assert_eq!(votes(10, 5), Some(AxisOrder::EastFirst));
+        assert_eq!(votes(10, 6), Some(AxisOrder::NorthFirst));
+    }
+
+    #[test]
+    fn ranges_of_known_systems_tell_east_from_north() {
+        for (code, east, north) in [
+            (25_832, 691_030.0, 5_336_020.0),
+            (7_415, 85_000.0, 446_550.0),
+            (2_056, 2_678_219.0, 1_243_583.0),
+            (31_467, 3_450_000.0, 5_430_000.0),
+            (2_154, 650_000.0, 6_860_000.0),
+        ] {
+            assert_eq!(order_by_range(code, [east, north]), Some(AxisOrder::EastFirst), "{code}");
+            assert_eq!(order_by_range(code, [north, east]), Some(AxisOrder::NorthFirst), "{code}");
+            // Shifted to zero, or of another place: not told.
+            assert_eq!(order_by_range(code, [12.0, 40.0]), None, "{code}");
+        }
+        assert_eq!(order_by_range(3_857, [1e6, 6e6]), None);
+    }
+}

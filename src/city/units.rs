@@ -7,11 +7,11 @@ use crate::geometry::{Point3, Vector3};
 /// Metres between which the middle one of a city's houses is high: garages to towers.
 const HOUSE_M: (f64, f64) = (1.5, 120.0);
 
-/// Metres; the middle house of the cities that this was tried on is 5 to 14 high.
+/// Metres; the middle house of nine city models (Amsterdam, Delft, Den Haag, Ingolstadt, Rotterdam) is 3 to 15 high.
 const COMMON_HOUSE_M: f64 = 9.0;
 
-/// Middle height above which feet are as likely as metres, where houses are not slender.
-const HIGH_FOR_METRES: f64 = 20.0;
+/// Middle height above which feet are as likely as metres: the blocks of Berlin and Paris are as high at most.
+const HIGH_FOR_METRES: f64 = 22.0;
 
 /// Objects from which on their heights tell more than those of single walls.
 const FEW_OBJECTS: usize = 3;
@@ -33,12 +33,9 @@ pub(super) struct UnitGuess {
 /// Looks at the city files, terrain left out; `None` where metres are as good as anything.
 pub(super) fn guess(sources: &[Source]) -> Option<UnitGuess> {
     let city: Vec<&Source> = sources.iter().filter(|source| source.role == CityRole::City).collect();
-    let houses: Vec<[f64; 2]> = city.iter().flat_map(|source| houses_of(source)).collect();
-    let heights: Vec<(f64, f64)> = if houses.len() >= FEW_OBJECTS {
-        houses.iter().map(|house| (house[0], 1.0)).collect()
-    } else {
-        city.iter().flat_map(|source| walls_of(source)).collect()
-    };
+    let houses: Vec<(f64, f64)> = city.iter().flat_map(|source| houses_of(source)).collect();
+    let is_of_houses = houses.len() >= FEW_OBJECTS;
+    let heights = if is_of_houses { houses } else { city.iter().flat_map(|source| walls_of(source)).collect() };
     let height = weighted_median(heights)?;
     if height > HOUSE_M.1 {
         let fits = |unit: &CityUnit| {
@@ -49,24 +46,19 @@ pub(super) fn guess(sources: &[Source]) -> Option<UnitGuess> {
         let unit = CANDIDATES.into_iter().filter(fits).min_by(|a, b| oddity(a).total_cmp(&oddity(b)))?;
         return Some(UnitGuess { unit, height });
     }
-    let width = weighted_median(houses.iter().map(|house| (house[1], 1.0)).collect())?;
-    let is_broad = width > height;
-    (houses.len() >= FEW_OBJECTS && height > HIGH_FOR_METRES && is_broad)
-        .then_some(UnitGuess { unit: CityUnit::Foot, height })
+    (is_of_houses && height > HIGH_FOR_METRES).then_some(UnitGuess { unit: CityUnit::Foot, height })
 }
 
-/// Height and width of each object that has a height.
-fn houses_of(source: &Source) -> Vec<[f64; 2]> {
-    let nowhere = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
-    let mut boxes = vec![nowhere; source.objects.len()];
+/// Height of each object that has one, all of one weight.
+fn houses_of(source: &Source) -> Vec<(f64, f64)> {
+    let mut spans = vec![(f64::INFINITY, f64::NEG_INFINITY); source.objects.len()];
     for face in 0..source.face_count() {
-        let (low, high) = &mut boxes[source.face_objects[face] as usize];
-        for corner in source.rings_of(face).flatten().map(|&at| source.positions[at as usize]) {
-            (*low, *high) = (low.inf(&corner), high.sup(&corner));
+        let (low, high) = &mut spans[source.face_objects[face] as usize];
+        for z in source.rings_of(face).flatten().map(|&at| source.positions[at as usize].z) {
+            (*low, *high) = (low.min(z), high.max(z));
         }
     }
-    let sizes = boxes.iter().map(|(low, high)| high - low);
-    sizes.filter(|size| size.z > 0.0).map(|size| [size.z, size.x.min(size.y)]).collect()
+    spans.iter().map(|(low, high)| (high - low, 1.0)).filter(|house| house.0 > 0.0).collect()
 }
 
 /// Height and area of each upright face.
@@ -95,4 +87,47 @@ fn weighted_median(mut values: Vec<(f64, f64)>) -> Option<f64> {
         sum >= half
     })?;
     Some(values[at].0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::format::obj::read_obj;
+
+    /// Objects that are single walls of these heights, four wide.
+    fn walls(heights: &[f64], role: CityRole) -> Source {
+        let mut text = String::new();
+        for (at, height) in heights.iter().enumerate() {
+            text += &format!("o {at}\nv 0 {at} 0\nv 4 {at} 0\nv 4 {at} {height}\nv 0 {at} {height}\nf -4 -3 -2 -1\n");
+        }
+        Source::from_obj(Path::new("city.obj"), role, read_obj(text.as_bytes()).unwrap())
+    }
+
+    fn guessed(heights: &[f64]) -> Option<(CityUnit, f64)> {
+        guess(&[walls(heights, CityRole::City)]).map(|guess| (guess.unit, guess.height))
+    }
+
+    #[test]
+    fn the_middle_house_tells_and_towers_and_sheds_do_not() {
+        assert_eq!(guessed(&[3.0, 9.0, 9.0, 12.0, 180.0]), None);
+        assert_eq!(guessed(&[300.0, 900.0, 950.0]), Some((CityUnit::Centimetre, 900.0)));
+        assert_eq!(guessed(&[9000.0, 9000.0, 120.0]), Some((CityUnit::Millimetre, 9000.0)));
+        assert_eq!(guessed(&[30.0, 30.0, 30.0, 8.0]), Some((CityUnit::Foot, 30.0)));
+        assert_eq!(guessed(&[1e9, 1e9, 1e9]), None, "no unit makes houses of these");
+        assert_eq!(guessed(&[]), None);
+    }
+
+    #[test]
+    fn where_objects_are_few_the_walls_tell_by_their_area() {
+        assert_eq!(guessed(&[900.0]), Some((CityUnit::Centimetre, 900.0)));
+        // A single high object may be a tower: nothing is said of feet.
+        assert_eq!(guessed(&[40.0]), None);
+    }
+
+    #[test]
+    fn terrain_is_no_house() {
+        assert_eq!(guess(&[walls(&[900.0; 5], CityRole::Terrain)]), None);
+    }
 }

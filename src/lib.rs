@@ -62,7 +62,9 @@ pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
 // City, reconstruction, start.
-pub use city::{CityLod, CityModel, CityOptions, CityUnit, CityUp, Facet, read_city, read_city_files};
+pub use city::{
+    CityLod, CityModel, CityOptions, CityUnit, CityUp, Facet, read_city, read_city_contents, read_city_files,
+};
 pub use format::read_start;
 pub use geometry::{Start, StartSigmas};
 pub use planes::PreparedCity;

@@ -6,7 +6,7 @@ mod needs;
 use std::path::{Path, PathBuf};
 
 use cityweld::types::{CityContents, CityError, KindCounts, Lod};
-use cityweld::{CityModel, CityOptions, read_city};
+use cityweld::{CityModel, CityOptions, read_city, read_city_contents};
 use needs::shared;
 
 fn own(name: &str) -> PathBuf {
@@ -83,6 +83,12 @@ fn one_of_four_levels_is_taken_and_never_a_footprint() {
 fn a_file_of_points_alone_is_no_city() {
     let error = read_city(&own("geometry_instance.city.json"), &[], &CityOptions::default()).unwrap_err();
     assert!(matches!(error, CityError::NoFaces { .. }), "{error}");
+    assert!(error.to_string().contains("2 points and lines, passed over; first: object fixture"), "{error}");
+    let contents = read_city_contents(&[own("geometry_instance.city.json")]).unwrap();
+    assert_eq!(
+        (contents[0].1.format.as_str(), contents[0].1.objects, contents[0].1.polygons.len()),
+        ("CityJSON 2.0", 1, 0)
+    );
 }
 
 #[test]

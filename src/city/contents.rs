@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Lod, SurfaceKind};
+use super::{Crs, Lod, SurfaceKind};
 use crate::format::surfaces::SurfaceFile;
 
 /// What a city file holds, before levels of detail are chosen.
@@ -17,6 +17,8 @@ pub struct CityContents {
     pub polygons: BTreeMap<Option<Lod>, KindCounts>,
     /// Polygons with holes.
     pub holes: usize,
+    /// The reference system that the file names.
+    pub crs: Option<Crs>,
 }
 
 /// Polygons by what they are of their object.
@@ -60,6 +62,7 @@ impl CityContents {
             format: file.format.clone(),
             objects: file.objects.len() - parts,
             parts,
+            crs: file.crs.as_deref().map(Crs::understood),
             ..CityContents::default()
         };
         for surface in &file.surfaces {

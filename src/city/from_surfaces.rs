@@ -65,7 +65,7 @@ impl Source {
         let step = file.step.filter(|_| frame.projection.is_none()).map(|step| step.max(FINEST_STEP_M));
         let precision = || written_precision(&file.positions.iter().map(written).collect::<Vec<_>>(), 0.0);
         source.precision_m = step.unwrap_or_else(precision);
-        source.positions = file.positions.iter().map(|&position| frame.placed(position)).collect();
+        source.positions = file.positions.into_iter().map(|position| frame.placed(position)).collect();
         source
     }
 }

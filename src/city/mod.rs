@@ -43,5 +43,5 @@ pub use error::CityError;
 pub use levels::CityLod;
 pub use model::{CityModel, CityRole, CitySource, Facet, FacetId, ObjectId};
 pub use options::{CityOptions, CityUnit, CityUp};
-pub use read::{read_city, read_city_files};
+pub use read::{read_city, read_city_contents, read_city_files};
 pub use warning::{CityDefect, CityPlace, CityWarning};

@@ -12,7 +12,7 @@ use super::tiles::{keep_filled, shared_names};
 use super::units::guess;
 use super::upright::odd_up;
 use super::warning::{CityDefect, CityPlace, CityWarning};
-use super::{CityError, CityModel, CityOptions, CityRole, CityUnit, CityUp};
+use super::{CityContents, CityError, CityModel, CityOptions, CityRole, CityUnit, CityUp};
 use crate::format::cityjson::read_cityjson;
 use crate::format::gltf::{GltfFile, read_gltf};
 use crate::format::obj::{ObjFile, read_obj};
@@ -39,6 +39,21 @@ pub fn read_city_files(city: &[PathBuf], terrain: &[PathBuf], options: &CityOpti
     }
     let (model, judged) = placed(parsed, options)?;
     Ok(model.with_warnings_first(warnings.into_iter().chain(judged).collect()))
+}
+
+/// What each file of a city holds, by its path, whether or not anything in it can be aligned with.
+pub fn read_city_contents(city: &[PathBuf]) -> Result<Vec<(PathBuf, CityContents)>, CityError> {
+    let mut contents = Vec::new();
+    for path in city {
+        let before = contents.len();
+        let mut files = CityFiles::at(path)?;
+        for path in std::mem::take(&mut files.paths) {
+            let parsed = files.taken(&path, Parsed::read(&path, CityRole::City))?;
+            contents.extend(parsed.map(|parsed| (parsed.path.clone(), parsed.contents())));
+        }
+        files.rest(contents.len() - before)?;
+    }
+    Ok(contents)
 }
 
 /// Brings all files into one frame and builds the model; with what concerns the city as a whole.
@@ -103,6 +118,17 @@ impl Parsed {
         match &self.content {
             Content::Surfaces(file) => Some(file),
             _ => None,
+        }
+    }
+
+    fn contents(&self) -> CityContents {
+        match &self.content {
+            Content::Obj(file) => CityContents::plain("OBJ", file.objects.len(), file.face_ends.len()),
+            Content::Gltf(file) => {
+                let triangles = file.parts.iter().map(|part| part.triangles.len()).sum();
+                CityContents::plain("glTF 2.0", file.parts.len(), triangles)
+            }
+            Content::Surfaces(file) => CityContents::of(file),
         }
     }
 

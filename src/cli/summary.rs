@@ -133,7 +133,7 @@ pub fn of_city(city: &CityModel, planes: &CityPlanes, files: &[String], output: 
 
 /// What a file of the city holds, a row for each level of detail.
 fn contents_rows(table: &mut Table, contents: &CityContents) {
-    let CityContents { format, objects, parts, polygons, holes } = contents;
+    let CityContents { format, objects, parts, polygons, holes, .. } = contents;
     table.row("format", format!("{format}: {objects} objects, {parts} parts, {holes} polygons with holes"));
     for (lod, counts) in polygons {
         let level = lod.map_or_else(|| "unsaid".to_owned(), |lod| lod.to_string());

@@ -92,7 +92,7 @@ struct ContentsJson<'a> {
 
 impl ContentsJson<'_> {
     fn of(contents: &CityContents) -> ContentsJson<'_> {
-        let CityContents { format, objects, parts, polygons, holes } = contents;
+        let CityContents { format, objects, parts, polygons, holes, .. } = contents;
         let level = |lod: &Option<Lod>| lod.map_or_else(|| "unsaid".to_owned(), |lod| lod.to_string());
         let kinds = |counts: &KindCounts| counts.named().filter(|(_, count)| *count > 0).collect();
         let polygons = polygons.iter().map(|(lod, counts)| (level(lod), kinds(counts))).collect();

@@ -86,7 +86,7 @@ pub(super) struct Semantics<'a> {
 
 #[derive(Deserialize)]
 pub(super) struct SemanticSurface<'a> {
-    #[serde(borrow, rename = "type")]
+    #[serde(borrow, default, rename = "type")]
     pub kind: Cow<'a, str>,
 }
 

@@ -352,7 +352,7 @@ fn cut_or_changed_at_any_byte_a_text_is_read_or_refused() {
         let text = text.as_bytes();
         for at in 0..text.len() {
             survives(&text[..at]);
-            for byte in [b'[', b']', b'{', b'"', b',', b'-', b'9', b'e', b' ', 0, 0xFF] {
+            for byte in [b'[', b']', b'"', b',', b'9', 0xFF] {
                 let mut changed = text.to_vec();
                 changed[at] = byte;
                 survives(&changed);

@@ -63,7 +63,9 @@ pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
 // City, reconstruction, start.
-pub use city::{CityModel, CityOptions, CityUp, Facet, read_city};
+pub use city::{
+    CityLod, CityModel, CityOptions, CityUnit, CityUp, Facet, read_city, read_city_contents, read_city_files,
+};
 pub use format::read_start;
 pub use geometry::{Start, StartSigmas};
 pub use planes::PreparedCity;
@@ -86,9 +88,13 @@ pub use geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 
 /// What the models and results are made of, and the errors of single functions.
 pub mod types {
-    pub use crate::city::{CityDefect, CityError, CityPlace, CityRole, CitySource, CityWarning, FacetId, ObjectId};
+    pub use crate::city::{
+        CityContents, CityDefect, CityError, CityPlace, CityRole, CitySource, CityWarning, Crs, FacetId, KindCounts,
+        Lod, ObjectId, SurfaceKind,
+    };
     pub use crate::export::{ExportError, OutputError, ReportError};
     pub use crate::format::PlacementError;
+    pub use crate::format::cityjson::{CityJsonError, CityJsonProblem};
     pub use crate::geometry::{Camera, CameraModel, StartError};
     pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};
     pub use crate::merging::{

@@ -184,7 +184,8 @@ fn refuses_cities_and_reconstructions_that_are_none() {
     let room = room();
     let city = |city: String| Align { city, ..Align::sample() };
     city(data("none.obj")).refused(&room, &["cannot read the city", "none.obj"]);
-    city(data("city")).refused(&room, &["folder", "city"]);
+    city(data("city")).refused(&room, &["no faces", "no_faces.obj"]);
+    city(data("start")).refused(&room, &["start"]);
     city(data("city/no_faces.obj")).refused(&room, &["no faces", "no_faces.obj"]);
     city(sample("photos/p001.jpg")).refused(&room, &["p001.jpg"]);
     city(data("three_points.ply")).refused(&room, &["three_points.ply"]);
@@ -263,6 +264,11 @@ fn refuses_numbers_that_make_no_sense() {
         ["--up", "0,0,0"],
         ["--up", "sideways"],
         ["--city-up", "x"],
+        ["--city-unit", "inch"],
+        ["--city-origin", "1,2"],
+        ["--city-origin", "1,2,NaN"],
+        ["--lod", "0"],
+        ["--lod", "two"],
     ] {
         Align::with(&wrong).refused(&room, &[wrong[0]]);
     }
@@ -289,6 +295,41 @@ fn planes_are_counted_and_written() {
     refused(&room, &["planes", &city, "-o", "planes.txt"], &[".glb", "planes.txt"]);
     refused(&room, &["planes", "none.obj"], &["none.obj"]);
     refused(&room, &["planes", &data("city/no_faces.obj"), "-o", "p.glb"], &["no faces"]);
+}
+
+#[test]
+fn planes_of_a_cityjson_file_tell_its_levels_and_its_reference_system() {
+    let room = room();
+    let city = repository("tests/data/formats/city/small.city.jsonl");
+    let said = stdout(&cityweld(&room, &["planes", &city]));
+    for line in [
+        "small.city.jsonl: 3 objects, 33 facets",
+        "CityJSON 2.0 Seq: 3 objects, 3 parts, 0 polygons with holes",
+        "2.2: 33 polygons (3 ground, 6 roof, 24 wall)",
+        "EPSG:7415, NAP height, https://www.opengis.net/def/crs/EPSG/0/7415",
+    ] {
+        assert!(said.contains(line), "{said}");
+    }
+    let said =
+        stdout(&cityweld(&room, &["planes", &city, "--lod", "1.2", "--city-unit", "cm", "--city-origin", "1,2,3"]));
+    assert!(said.contains("3 objects, 22 facets") && said.contains("x           851."), "{said}");
+    let report: serde_json::Value =
+        serde_json::from_str(&stdout(&cityweld(&room, &["planes", &city, "--json"]))).unwrap();
+    assert_eq!(report["crs"]["epsg"], 7415);
+    assert_eq!(report["contents"][0]["polygons"]["1.3"]["wall"], 21);
+}
+
+#[test]
+fn a_folder_of_tiles_is_a_city_and_options_of_a_city_need_one() {
+    let room = room();
+    let tiles = repository("tests/data/formats/city");
+    std::fs::create_dir(room.path().join("tiles")).unwrap();
+    for name in ["small.city.jsonl", "3dbag_b2.city.jsonl"] {
+        std::fs::copy(Path::new(&tiles).join(name), room.path().join("tiles").join(name)).unwrap();
+    }
+    let said = stdout(&cityweld(&room, &["planes", "tiles"]));
+    assert!(said.starts_with("tiles: 5 objects, 110 facets"), "{said}");
+    refused(&room, &["merge", "a.ply", "b.ply", "--crs", "EPSG:28992", "-o", "out"], &["a.ply"]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::facet::Shaper;
+use super::facet::{Face, Shaper};
 use super::join::join_vertices;
 use super::orientation::turn_outward;
 use super::origin::common_origin;
@@ -63,7 +63,8 @@ fn add_source(
     let objects = first_object..model.objects.len() as u32;
     let place_of = |facet: u32| source.place_of(facet_faces[(facet - facets.start) as usize] as usize);
     let (path, role, precision_m) = (source.path.clone(), source.role, source.precision_m);
-    let of_file = CitySource { path, role, facets: facets.clone(), objects, precision_m };
+    let contents = source.contents.clone();
+    let of_file = CitySource { path, role, facets: facets.clone(), objects, precision_m, contents };
     // `validate` must see the turned model.
     turn_outward(model, &of_file, warnings, place_of);
     validate(model, &of_file, warnings, place_of);
@@ -86,7 +87,7 @@ fn reserve(model: &mut CityModel, chunks: &[Chunk]) -> Option<()> {
 /// What a file without a usable face holds instead.
 fn found(source: &Source) -> String {
     match source.face_count() {
-        0 => format!("{} vertices and no polygons", source.positions.len()),
+        0 => source.nothing_found(),
         1 => "one polygon, which has no area or crosses itself beyond repair".into(),
         faces => format!("{faces} polygons, all without an area or crossing themselves beyond repair"),
     }
@@ -108,15 +109,21 @@ fn shape_chunk(source: &Source, chunk: usize, vertex_of: &[u32], model: &CityMod
     let mut shaper = Shaper::new(&model.vertices, source.precision_m, faces.len());
     let mut facet_faces = Vec::with_capacity(faces.len());
     for face in faces {
-        let object = ObjectId(first_object + source.face_objects[face]);
-        shaper.shape(face as u32, object, ring_of(source.corners_of(face), vertex_of));
+        let mut rings = source.rings_of(face).map(|corners| ring_of(corners, vertex_of));
+        shaper.shape(Face {
+            number: face as u32,
+            object: ObjectId(first_object + source.face_objects[face]),
+            kind: source.face_kinds.get(face).copied().flatten(),
+            outline: rings.next().unwrap_or_default(),
+            holes: rings.collect(),
+        });
         facet_faces.resize(shaper.facets.len(), face as u32);
     }
     let Shaper { facets, triangles, new_vertices, defects, .. } = shaper;
     Chunk { facets, facet_faces, triangles, new_vertices, defects }
 }
 
-/// The face's vertices without immediate repetitions, also across the closing edge.
+/// The ring's vertices without immediate repetitions, also across the closing edge.
 fn ring_of(corners: &[u32], vertex_of: &[u32]) -> Vec<u32> {
     let mut ring: Vec<u32> = corners.iter().map(|&corner| vertex_of[corner as usize]).collect();
     ring.dedup();
@@ -135,7 +142,8 @@ fn add_chunk(model: &mut CityModel, mut chunk: Chunk, first_new: u32) {
             *corner += moved_by;
         }
         for facet in chunk.facets.iter_mut() {
-            facet.outline.iter_mut().filter(|corner| **corner >= first_new).for_each(|corner| *corner += moved_by);
+            let corners = facet.outline.iter_mut().chain(facet.holes.iter_mut().flatten());
+            corners.filter(|corner| **corner >= first_new).for_each(|corner| *corner += moved_by);
         }
     }
     let first_triangle = model.triangles.len() as u32;

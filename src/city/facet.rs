@@ -2,7 +2,7 @@
 
 use super::triangulate::triangulate;
 use super::warning::CityDefect;
-use super::{Facet, ObjectId};
+use super::{Facet, ObjectId, SurfaceKind};
 use crate::geometry::{Plane, Point3, Vector3};
 
 /// Metres. A polygon narrower than this has no direction that its digits could hold: files are written to a tenth of a
@@ -34,10 +34,18 @@ pub(super) struct Shaper<'a> {
     flat: Vec<[f64; 2]>,
 }
 
-/// A polygon as the facet will have it, if it is planar.
-struct Polygon {
-    face: u32,
-    ring: Vec<u32>,
+/// A face of a file.
+pub(super) struct Face {
+    pub number: u32,
+    pub object: ObjectId,
+    pub kind: Option<SurfaceKind>,
+    /// Vertices, none twice in a row.
+    pub outline: Vec<u32>,
+    pub holes: Vec<Vec<u32>>,
+}
+
+/// Where a face lies.
+struct Place {
     plane: Plane,
     centroid: Point3<f64>,
 }
@@ -56,58 +64,77 @@ impl<'a> Shaper<'a> {
         }
     }
 
-    /// Adds the facets of a ring of vertices, or the reason why there are none.
-    pub fn shape(&mut self, face: u32, object: ObjectId, ring: Vec<u32>) {
+    /// Adds the facets of a face, or the reason why there are none.
+    pub fn shape(&mut self, mut face: Face) {
         self.corners.clear();
-        self.corners.extend(ring.iter().map(|&vertex| self.vertices[vertex as usize]));
+        self.corners.extend(face.outline.iter().map(|&vertex| self.vertices[vertex as usize]));
         let centroid = centroid(&self.corners);
         let area_vector = newell(&self.corners, &centroid);
         let reach = self.corners.iter().map(|corner| (corner - centroid).norm_squared()).fold(0.0, f64::max);
         let extent = 2.0 * reach.sqrt();
-        let is_wide = ring.len() >= 3 && 2.0 * area_vector.norm() > ZERO_WIDTH_M * extent;
+        let is_wide = face.outline.len() >= 3 && 2.0 * area_vector.norm() > ZERO_WIDTH_M * extent;
         let Some(plane) = Plane::through(&centroid, &area_vector).filter(|_| is_wide) else {
-            return self.defects.push((face, CityDefect::ZeroArea));
+            return self.defects.push((face.number, CityDefect::ZeroArea));
         };
-        let polygon = Polygon { face, ring, plane, centroid };
+        let hole_area = self.wind_holes(&mut face.holes, &plane.normal);
+        self.corners.extend(face.holes.iter().flatten().map(|&vertex| self.vertices[vertex as usize]));
         let first = self.triangles.len();
-        let Some(is_clean) = self.cut(&polygon) else {
-            return self.defects.push((face, CityDefect::Tangled));
+        let Some(is_clean) = self.cut(&face, &Place { plane, centroid }) else {
+            return self.defects.push((face.number, CityDefect::Tangled));
         };
         let off_m = self.corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
         if off_m > flat_tolerance(extent, self.precision_m) {
-            self.defects.push((face, CityDefect::NonPlanar { worst_m: off_m }));
-            return self.add_split(first, object);
+            self.defects.push((face.number, CityDefect::NonPlanar { worst_m: off_m }));
+            return self.add_split(first, &face);
         }
-        // Triangles of a flat ring cover what it winds round, unless it overlaps itself.
-        let area = if is_clean { area_vector.norm() } else { self.covered_area(first) };
+        // Triangles of flat rings cover what these wind round, unless they overlap.
+        let area = if is_clean { area_vector.norm() - hole_area } else { self.covered_area(first) };
         let triangles = first as u32..self.triangles.len() as u32;
-        self.facets.push(Facet { outline: polygon.ring, plane, area, object, triangles });
+        let Face { outline, holes, object, kind, .. } = face;
+        self.facets.push(Facet { outline, holes, plane, area, object, kind, triangles });
     }
 
-    /// Adds the polygon's triangles and says whether it is free of overlaps; `None` where it is too tangled.
-    fn cut(&mut self, polygon: &Polygon) -> Option<bool> {
-        let ring = &polygon.ring;
-        if let [a, b, c] = ring[..] {
-            self.triangles.push([a, b, c]);
+    /// Turns holes so that they run clockwise seen from outside, as a neighbour's edges expect, drops those without an area, and
+    /// gives the area of all.
+    fn wind_holes(&self, holes: &mut Vec<Vec<u32>>, normal: &Vector3<f64>) -> f64 {
+        let mut whole = 0.0;
+        holes.retain_mut(|hole| {
+            let corners: Vec<Point3<f64>> = hole.iter().map(|&vertex| self.vertices[vertex as usize]).collect();
+            let area = newell(&corners, &centroid(&corners)).dot(normal);
+            if area > 0.0 {
+                hole.reverse();
+            }
+            whole += area.abs();
+            hole.len() >= 3 && area != 0.0
+        });
+        whole
+    }
+
+    /// Adds the face's triangles and says whether it is free of overlaps; `None` where it is too tangled.
+    fn cut(&mut self, face: &Face, place: &Place) -> Option<bool> {
+        let outline = &face.outline;
+        if let ([a, b, c], []) = (&outline[..], &face.holes[..]) {
+            self.triangles.push([*a, *b, *c]);
             return Some(true);
         }
         if let [a, b, c, d] = self.corners[..]
-            && let Some(halves) = halves([a, b, c, d], &polygon.plane.normal)
+            && let Some(halves) = halves([a, b, c, d], &place.plane.normal)
         {
-            self.triangles.extend(halves.map(|half| half.map(|at| ring[at])));
+            self.triangles.extend(halves.map(|half| half.map(|at| outline[at])));
             return Some(true);
         }
-        let [right, up] = axes(&polygon.plane.normal);
-        let centroid = polygon.centroid;
+        let [right, up] = axes(&place.plane.normal);
+        let centroid = place.centroid;
         self.flat.clear();
         let in_plane = |corner: &Point3<f64>| [right.dot(&(corner - centroid)), up.dot(&(corner - centroid))];
         self.flat.extend(self.corners.iter().map(in_plane));
-        let made = triangulate(&self.flat)?;
+        let rings: Vec<u32> = outline.iter().chain(face.holes.iter().flatten()).copied().collect();
+        let made = triangulate(&self.flat, &face.ring_ends())?;
         let first_new = self.vertices.len() + self.new_vertices.len();
         self.new_vertices.extend(made.crossings.iter().map(|[x, y]| centroid + right * *x + up * *y));
-        let vertex_of = |at: usize| ring.get(at).copied().unwrap_or((first_new + at - ring.len()) as u32);
+        let vertex_of = |at: usize| rings.get(at).copied().unwrap_or((first_new + at - rings.len()) as u32);
         self.triangles.extend(made.triangles.iter().map(|triangle| triangle.map(vertex_of)));
-        self.defects.extend(made.overlaps.then_some((polygon.face, CityDefect::SelfIntersecting)));
+        self.defects.extend(made.overlaps.then_some((face.number, CityDefect::SelfIntersecting)));
         Some(!made.overlaps)
     }
 
@@ -116,7 +143,7 @@ impl<'a> Shaper<'a> {
     }
 
     /// Makes a facet of every triangle from `first` on that has a plane, and forgets the others.
-    fn add_split(&mut self, first: usize, object: ObjectId) {
+    fn add_split(&mut self, first: usize, face: &Face) {
         let triangles = self.triangles.split_off(first);
         for triangle in triangles {
             let corners = self.positions(&triangle);
@@ -127,12 +154,13 @@ impl<'a> Shaper<'a> {
             if let Some(plane) = Plane::through(&centroid, &area_vector).filter(|_| is_wide) {
                 let start = self.triangles.len() as u32;
                 self.triangles.push(triangle);
-                let outline = triangle.to_vec();
                 self.facets.push(Facet {
-                    outline,
+                    outline: triangle.to_vec(),
+                    holes: Vec::new(),
                     plane,
                     area: area_vector.norm(),
-                    object,
+                    object: face.object,
+                    kind: face.kind,
                     triangles: start..start + 1,
                 });
             }
@@ -144,6 +172,19 @@ impl<'a> Shaper<'a> {
             let vertex = vertex as usize;
             self.vertices.get(vertex).copied().unwrap_or_else(|| self.new_vertices[vertex - self.vertices.len()])
         })
+    }
+}
+
+impl Face {
+    /// Where each ring ends in the list of all corners.
+    fn ring_ends(&self) -> Vec<usize> {
+        let lengths = std::iter::once(self.outline.len()).chain(self.holes.iter().map(Vec::len));
+        lengths
+            .scan(0, |end, length| {
+                *end += length;
+                Some(*end)
+            })
+            .collect()
     }
 }
 

@@ -1,12 +1,23 @@
 //! The city model: polygons with their objects, in metres, z up, about a local origin.
 //!
-//! [`read_city`] takes OBJ, glTF and GLB files into one [`CityModel`]. What such files usually have wrong is tolerated
+//! [`read_city`] takes OBJ, glTF, GLB and CityJSON files into one [`CityModel`]. What such files usually have wrong is tolerated
 //! and counted in [`CityModel::warnings`]; what leaves no honest model is a [`CityError`].
 
+mod axes;
 mod build;
+mod contents;
+mod crs;
+mod degrees;
+mod error;
 mod facet;
+mod files;
+mod foreign;
+mod frame;
+mod from_surfaces;
 mod join;
+mod levels;
 mod model;
+mod options;
 mod orientation;
 mod origin;
 mod polygons;
@@ -17,10 +28,20 @@ mod source;
 mod subset;
 #[cfg(test)]
 mod tests;
+mod tiles;
 mod triangulate;
+mod units;
+mod upright;
 mod validate;
 mod warning;
+mod words;
 
+pub use crate::format::surfaces::{Lod, SurfaceKind};
+pub use contents::{CityContents, KindCounts};
+pub use crs::Crs;
+pub use error::CityError;
+pub use levels::CityLod;
 pub use model::{CityModel, CityRole, CitySource, Facet, FacetId, ObjectId};
-pub use read::{CityError, CityOptions, CityUp, read_city};
+pub use options::{CityOptions, CityUnit, CityUp};
+pub use read::{read_city, read_city_contents, read_city_files};
 pub use warning::{CityDefect, CityPlace, CityWarning};

@@ -4,6 +4,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use super::warning::CityWarning;
+use super::{CityContents, Crs};
+use crate::format::surfaces::SurfaceKind;
 use crate::geometry::{Plane, Point3, Vector3};
 
 /// Index into [`CityModel::facets`].
@@ -28,6 +30,8 @@ pub struct CityModel {
     pub objects: Vec<String>,
     /// One per file, in the order in which they were given: the city, then terrain.
     pub sources: Vec<CitySource>,
+    /// The reference system of file coordinates, where one is known.
+    pub crs: Option<Crs>,
     /// What the files had wrong and was tolerated, one entry a kind.
     pub warnings: Vec<CityWarning>,
 }
@@ -35,13 +39,17 @@ pub struct CityModel {
 /// One polygon of the model, or one triangle where the file has only triangles.
 #[derive(Clone, Debug)]
 pub struct Facet {
-    /// Outline as vertex indices, counter-clockwise seen from outside; holes are bridged or triangulated away.
+    /// Outline as vertex indices, counter-clockwise seen from outside.
     pub outline: Vec<u32>,
+    /// Holes in it, clockwise seen from outside.
+    pub holes: Vec<Vec<u32>>,
     /// Newell plane through the outline's centroid; the normal is the outward side by winding.
     pub plane: Plane,
     /// Square metres, of the triangulation.
     pub area: f64,
     pub object: ObjectId,
+    /// What it is of its object, where the file says.
+    pub kind: Option<SurfaceKind>,
     /// Range in [`CityModel::triangles`].
     pub triangles: Range<u32>,
 }
@@ -57,6 +65,8 @@ pub struct CitySource {
     pub objects: Range<u32>,
     /// How finely the file's coordinates are written, metres.
     pub precision_m: f64,
+    /// What the file holds, before levels of detail were chosen.
+    pub contents: CityContents,
 }
 
 /// What a file is for.
@@ -67,11 +77,24 @@ pub enum CityRole {
     Terrain,
 }
 
+impl Facet {
+    /// The outline, then the holes.
+    pub fn rings(&self) -> impl Iterator<Item = &[u32]> {
+        std::iter::once(&self.outline).chain(&self.holes).map(Vec::as_slice)
+    }
+}
+
 impl CityModel {
     /// The smallest box around all vertices, local coordinates; `None` without any.
     pub fn bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
         let first = *self.vertices.first()?;
         Some(self.vertices.iter().fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex))))
+    }
+
+    /// Puts what concerns the city as a whole before what its files had wrong.
+    pub(super) fn with_warnings_first(mut self, warnings: Vec<CityWarning>) -> CityModel {
+        self.warnings.splice(0..0, warnings);
+        self
     }
 
     /// The name of an object, or an empty text for an id of another model.

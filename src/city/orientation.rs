@@ -129,6 +129,7 @@ fn turn(model: &mut CityModel, facet: u32) {
     let facet = &mut model.facets[facet as usize];
     // The first corner stays the first.
     facet.outline[1..].reverse();
+    facet.holes.iter_mut().for_each(|hole| hole.reverse());
     let plane = facet.plane.flipped();
     // Adding zero turns a negative zero into the usual one.
     facet.plane = Plane { normal: plane.normal.map(|c| c + 0.0), offset: plane.offset + 0.0 };

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::build::build;
 use super::source::{Source, written_precision};
-use super::{CityError, CityModel, CityRole};
+use super::{CityContents, CityError, CityModel, CityRole};
 use crate::geometry::Point3;
 
 /// What messages and [`super::CitySource::path`] name in the place of a file.
@@ -40,8 +40,11 @@ impl CityModel {
             corners: (0..positions.len() as u32).collect(),
             positions,
             face_ends,
+            holes: Vec::new(),
             face_lines: Vec::new(),
+            face_kinds: Vec::new(),
             face_objects,
+            contents: CityContents::plain("polygons", objects.len(), polygons.len()),
             objects,
             shares_vertices: false,
             warnings: Vec::new(),

@@ -1,95 +1,158 @@
-//! Files to city model: which format it is, what went wrong where.
+//! Files to city model, on one page: which format each is, one frame for all, polygons, model.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use super::build::build;
+use super::files::{CityFiles, open};
+use super::frame::Frame;
+use super::levels::choose;
 use super::recognise::{Format, recognise};
 use super::source::Source;
-use super::{CityModel, CityRole};
-use crate::format::escaped;
-use crate::format::file::{LARGEST_MODEL_BYTES, read_regular};
-use crate::format::gltf::{self, GltfError};
-use crate::format::obj::{self, ObjError};
+use super::tiles::{keep_filled, shared_names};
+use super::units::guess;
+use super::upright::odd_up;
+use super::warning::{CityDefect, CityPlace, CityWarning};
+use super::{CityContents, CityError, CityModel, CityOptions, CityRole, CityUnit, CityUp};
+use crate::format::cityjson::read_cityjson;
+use crate::format::gltf::{GltfFile, read_gltf};
+use crate::format::obj::{ObjFile, read_obj};
+use crate::format::surfaces::SurfaceFile;
 
-/// How to take city files.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct CityOptions {
-    /// Which axis of OBJ files points up; glTF is y up by its standard.
-    pub up: CityUp,
-}
-
-/// The axis that points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CityUp {
-    #[default]
-    Z,
-    /// (x, y, z) becomes (x, -z, y).
-    Y,
-}
-
-/// Why files are no city.
-#[derive(Debug, thiserror::Error)]
-pub enum CityError {
-    #[error("cannot read the file: {reason}; expected an OBJ, glTF or GLB file ({})", path.display())]
-    Unreadable { path: PathBuf, reason: io::Error },
-    #[error("{} ({})", escaped(&error.to_string()), escaped(&obj_place(path, error)))]
-    Obj { path: PathBuf, error: ObjError },
-    #[error("{} ({})", escaped(&error.to_string()), escaped(&gltf_place(path, error)))]
-    Gltf { path: PathBuf, error: Box<GltfError> },
-    #[error("{found}, expected an OBJ, glTF or GLB file; {remedy} ({})", path.display())]
-    OtherFormat { path: PathBuf, found: &'static str, remedy: &'static str },
-    #[error("the city has no faces: {found}; expected polygons (`f` lines, or triangles of a mesh) ({})", path.display())]
-    NoFaces { path: PathBuf, found: String },
-    #[error("more than 4 billion vertices or triangles; split the model ({})", path.display())]
-    TooLarge { path: PathBuf },
-    #[error(
-        "polygon {polygon} of object {object} has a corner at {}; expected finite coordinates in metres",
-        place(corner)
-    )]
-    CornerNotFinite { polygon: usize, object: String, corner: [f64; 3] },
-}
-
-fn place([x, y, z]: &[f64; 3]) -> String {
-    format!("({x}, {y}, {z})")
-}
-
-fn obj_place(path: &Path, error: &ObjError) -> String {
-    let object = error.object.as_ref().map_or(String::new(), |name| format!("object {name}, "));
-    match error.line {
-        0 => format!("{object}{}", path.display()),
-        line => format!("{object}{}:{line}", path.display()),
-    }
-}
-
-fn gltf_place(path: &Path, error: &GltfError) -> String {
-    let object = error.object.as_ref().map_or(String::new(), |name| format!("object {name}, "));
-    let place = if error.place.is_empty() { String::new() } else { format!("{}, ", error.place) };
-    format!("{object}{place}{}", path.display())
-}
-
-/// Reads CITY and further meshes (terrain) into one model with one common origin.
+/// Reads CITY (a file, or a folder of tiles) and further meshes (terrain) into one model with one common origin.
 pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Result<CityModel, CityError> {
-    let mut sources = vec![read_source(city, CityRole::City, options)?];
-    for path in terrain {
-        sources.push(read_source(path, CityRole::Terrain, options)?);
-    }
-    build(sources)
+    read_city_files(&[city.to_owned()], terrain, options)
 }
 
-fn read_source(path: &Path, role: CityRole, options: &CityOptions) -> Result<Source, CityError> {
-    let bytes = read_regular(path, LARGEST_MODEL_BYTES)
-        .map_err(|reason| CityError::Unreadable { path: path.to_owned(), reason })?;
-    match recognise(&bytes, path)? {
-        Format::Gltf => {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            let file = gltf::read_gltf(&bytes, folder);
-            let file = file.map_err(|error| CityError::Gltf { path: path.to_owned(), error: Box::new(error) })?;
-            Ok(Source::from_gltf(path, role, file))
+/// As [`read_city`], of several files or folders that are one city.
+pub fn read_city_files(city: &[PathBuf], terrain: &[PathBuf], options: &CityOptions) -> Result<CityModel, CityError> {
+    let mut parsed = Vec::new();
+    let mut warnings = Vec::new();
+    for (paths, role) in [(city, CityRole::City), (terrain, CityRole::Terrain)] {
+        for path in paths {
+            let before = parsed.len();
+            let mut files = CityFiles::at(path)?;
+            for path in std::mem::take(&mut files.paths) {
+                parsed.extend(files.taken(&path, Parsed::read(&path, role))?);
+            }
+            warnings.extend(files.rest(parsed.len() - before)?);
         }
-        Format::Obj => {
-            let file = obj::read_obj(&bytes).map_err(|error| CityError::Obj { path: path.to_owned(), error })?;
-            Ok(Source::from_obj(path, role, options.up, file))
+    }
+    let (model, judged) = placed(parsed, options)?;
+    Ok(model.with_warnings_first(warnings.into_iter().chain(judged).collect()))
+}
+
+/// What each file of a city holds, by its path, whether or not anything in it can be aligned with.
+pub fn read_city_contents(city: &[PathBuf]) -> Result<Vec<(PathBuf, CityContents)>, CityError> {
+    let mut contents = Vec::new();
+    for path in city {
+        let before = contents.len();
+        let mut files = CityFiles::at(path)?;
+        for path in std::mem::take(&mut files.paths) {
+            let parsed = files.taken(&path, Parsed::read(&path, CityRole::City))?;
+            contents.extend(parsed.map(|parsed| (parsed.path.clone(), parsed.contents())));
         }
+        files.rest(contents.len() - before)?;
+    }
+    Ok(contents)
+}
+
+/// Brings all files into one frame and builds the model; with what concerns the city as a whole.
+fn placed(parsed: Vec<Parsed>, options: &CityOptions) -> Result<(CityModel, Vec<CityWarning>), CityError> {
+    let surfaces: Vec<&SurfaceFile> = parsed.iter().filter_map(Parsed::surfaces).collect();
+    let frame = Frame::of(&surfaces, options);
+    let up_of_first = parsed.first().map_or(CityUp::Z, |file| file.up(options));
+    let sources: Vec<Source> = parsed.into_iter().map(|file| file.into_source(&frame, options)).collect();
+    let sources = keep_filled(sources)?;
+    sources.iter().try_for_each(Source::check_reach)?;
+    let first = sources.first().map_or(PathBuf::new(), |source| source.path.clone());
+    let of_city = |defect| {
+        let example = CityPlace { path: first.clone(), line: None, object: String::new() };
+        CityWarning { defect, count: 1, example }
+    };
+    let guess = if options.unit.is_none() { guess(&sources) } else { None };
+    let odd_heights = guess.map(|guess| CityDefect::OddHeights { unit: guess.unit, height: guess.height });
+    let shared_names = shared_names(&sources);
+    let mut model = build(sources)?;
+    let decided = frame.defects.iter().cloned().chain(odd_heights).chain(odd_up(&model, up_of_first));
+    let warnings = decided.map(of_city).chain(shared_names).collect();
+    model.crs = frame.crs;
+    Ok((model, warnings))
+}
+
+/// A file as its format has it.
+struct Parsed {
+    path: PathBuf,
+    role: CityRole,
+    content: Content,
+}
+
+enum Content {
+    Obj(ObjFile),
+    Gltf(GltfFile),
+    Surfaces(SurfaceFile),
+}
+
+impl Parsed {
+    fn read(path: &Path, role: CityRole) -> Result<Parsed, CityError> {
+        let bytes = open(path)?;
+        let path = path.to_owned();
+        let content = match recognise(&bytes, &path)? {
+            Format::Gltf => {
+                let folder = path.parent().unwrap_or(Path::new(""));
+                let file = read_gltf(&bytes, folder);
+                Content::Gltf(file.map_err(|error| CityError::Gltf { path: path.clone(), error: Box::new(error) })?)
+            }
+            Format::CityJson => {
+                let file = read_cityjson(&bytes);
+                let error = |error| CityError::CityJson { path: path.clone(), error: Box::new(error) };
+                Content::Surfaces(file.map_err(error)?)
+            }
+            Format::Obj => {
+                Content::Obj(read_obj(&bytes).map_err(|error| CityError::Obj { path: path.clone(), error })?)
+            }
+        };
+        Ok(Parsed { path, role, content })
+    }
+
+    fn surfaces(&self) -> Option<&SurfaceFile> {
+        match &self.content {
+            Content::Surfaces(file) => Some(file),
+            _ => None,
+        }
+    }
+
+    fn contents(&self) -> CityContents {
+        match &self.content {
+            Content::Obj(file) => CityContents::plain("OBJ", file.objects.len(), file.face_ends.len()),
+            Content::Gltf(file) => {
+                let triangles = file.parts.iter().map(|part| part.triangles.len()).sum();
+                CityContents::plain("glTF 2.0", file.parts.len(), triangles)
+            }
+            Content::Surfaces(file) => CityContents::of(file),
+        }
+    }
+
+    /// The axis that points up in the file.
+    fn up(&self, options: &CityOptions) -> CityUp {
+        let own = if matches!(self.content, Content::Gltf(_)) { CityUp::Y } else { CityUp::Z };
+        options.up.unwrap_or(own)
+    }
+
+    fn into_source(self, frame: &Frame, options: &CityOptions) -> Source {
+        let up = self.up(options);
+        let (path, role) = (&self.path, self.role);
+        let mut source = match self.content {
+            Content::Obj(file) => Source::from_obj(path, role, file),
+            Content::Gltf(file) => Source::from_gltf(path, role, file),
+            Content::Surfaces(file) => {
+                let chosen = choose(&file, options.lod, role);
+                Source::from_surfaces(path, role, file, &chosen, frame)
+            }
+        };
+        source.turn(up);
+        // What was projected is in metres already.
+        let unit = if frame.projection.is_some() { CityUnit::Metre } else { options.unit.unwrap_or_default() };
+        source.scale_and_shift(unit.metres(), options.origin);
+        source
     }
 }

@@ -2,11 +2,18 @@
 
 use std::path::Path;
 
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
 use super::CityError;
+use super::foreign::foreign_format;
 use crate::format::gltf::is_glb;
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Obj,
+    /// One city, or a sequence of features.
+    CityJson,
     /// JSON or GLB; the reader tells them apart.
     Gltf,
 }
@@ -19,25 +26,25 @@ const OBJ_WORDS: [&str; 13] = ["v", "vn", "vt", "vp", "f", "fo", "o", "g", "s", 
 
 /// Tells the format, or what the file seems to be instead.
 pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> {
-    let other = |found, remedy| Err(CityError::OtherFormat { path: path.to_owned(), found, remedy });
+    let other = |(found, remedy)| Err(CityError::OtherFormat { path: path.to_owned(), found, remedy });
+    if bytes.is_empty() {
+        return other(("the file is empty", "write it again"));
+    }
     if is_glb(bytes) {
         return Ok(Format::Gltf);
+    }
+    if let Some(foreign) = foreign_format(bytes) {
+        return other(foreign);
     }
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOKED_AT)]);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     let converts = "convert it";
-    match bytes {
-        [] => return other("the file is empty", "write it again"),
-        [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => return other("this is UTF-16 text", "save it as UTF-8"),
-        [b'P', b'K', 3, 4, ..] => return other("this is a ZIP archive", "unpack it"),
-        [0x1F, 0x8B, ..] => return other("this is a gzip archive", "unpack it"),
-        _ if text.starts_with('{') && text.contains("\"CityJSON") => {
-            return other("this is CityJSON", "convert it (cjio exports OBJ and glTF)");
-        }
-        _ if text.starts_with('{') => return Ok(Format::Gltf),
-        _ if text.starts_with("ply") => return other("this is a PLY file", converts),
-        _ if text.starts_with("solid") => return other("this is an STL file", converts),
-        _ if text.starts_with('<') => return other("this is XML (CityGML?)", converts),
+    match text {
+        _ if text.starts_with('{') => return json_format(bytes, text, path).or_else(other),
+        _ if text.starts_with('[') => return other(("this JSON is no city model", converts)),
+        _ if text.starts_with("ply") => return other(("this is a PLY file", converts)),
+        _ if text.starts_with("solid") => return other(("this is an STL file", converts)),
+        _ if text.starts_with('<') => return other(xml_format(text)),
         _ => {}
     }
     let is_obj_line = |line: &str| line.split_whitespace().next().is_some_and(|word| OBJ_WORDS.contains(&word));
@@ -45,5 +52,62 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
     if is_named_obj || text.lines().any(is_obj_line) {
         return Ok(Format::Obj);
     }
-    other("the file is of an unknown format", converts)
+    other(("the file is of an unknown format", converts))
+}
+
+/// The keys of a JSON object that tell what it is; their order in the file means nothing.
+#[derive(Deserialize)]
+struct Keys {
+    #[serde(rename = "type")]
+    kind: Option<serde_json::Value>,
+    asset: Option<IgnoredAny>,
+    #[serde(rename = "CityObjects")]
+    city_objects: Option<IgnoredAny>,
+    #[serde(rename = "geometricError")]
+    geometric_error: Option<IgnoredAny>,
+}
+
+/// `beginning`: what was looked at. The whole is walked only where that does not say it.
+fn json_format(bytes: &[u8], beginning: &str, path: &Path) -> Result<Format, (&'static str, &'static str)> {
+    if beginning.contains("\"CityJSON\"") || beginning.contains("\"CityJSONFeature\"") {
+        return Ok(Format::CityJson);
+    }
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let is_named_gltf = path.extension().is_some_and(|name| name.eq_ignore_ascii_case("gltf"));
+    let Some(Ok(keys)) = serde_json::Deserializer::from_slice(bytes).into_iter::<Keys>().next() else {
+        // Their readers say where a text is broken.
+        return match beginning.contains("\"CityObjects\"") {
+            true => Ok(Format::CityJson),
+            false if is_named_gltf || beginning.contains("\"asset\"") => Ok(Format::Gltf),
+            false => Err(("this JSON is broken", "write it again")),
+        };
+    };
+    match keys.kind.as_ref().and_then(serde_json::Value::as_str) {
+        Some("FeatureCollection" | "Feature" | "Polygon" | "MultiPolygon" | "GeometryCollection") => {
+            return Err(("this is GeoJSON, which has outlines and no walls", "give the model itself"));
+        }
+        Some("Topology") => return Err(("this is TopoJSON, which has outlines and no walls", "give the model itself")),
+        Some("CityJSON" | "CityJSONFeature") => return Ok(Format::CityJson),
+        _ => {}
+    }
+    match keys {
+        Keys { city_objects: Some(_), .. } => Ok(Format::CityJson),
+        Keys { geometric_error: Some(_), .. } => Err(("this is a tileset of 3D Tiles", "convert it to glTF")),
+        Keys { asset: Some(_), .. } => Ok(Format::Gltf),
+        _ if is_named_gltf => Ok(Format::Gltf),
+        _ => Err(("this JSON is no city model", "give the city model first")),
+    }
+}
+
+fn xml_format(text: &str) -> (&'static str, &'static str) {
+    const KINDS: [(&str, &str, &str); 6] = [
+        ("<COLLADA", "this is a COLLADA file", "convert it to OBJ or glTF"),
+        ("<kml", "this is a KML file", "get the city as CityJSON or CityGML"),
+        ("<svg", "this is an SVG drawing", "give the city model itself"),
+        ("<!DOCTYPE html", "this is a web page", "download the file itself"),
+        ("<html", "this is a web page", "download the file itself"),
+        ("CityModel", "this is CityGML", "convert it to CityJSON (citygml-tools to-cityjson)"),
+    ];
+    let known = KINDS.into_iter().find(|kind| text.contains(kind.0)).map(|kind| (kind.1, kind.2));
+    known.unwrap_or(("this is XML of an unknown kind", "convert it"))
 }

@@ -10,7 +10,7 @@ use crate::format::obj::{ObjFile, ObjGroup, ObjObject, write_obj};
 impl CityModel {
     /// The facets that are kept, with what they use, counted anew; same origin, no warnings.
     pub fn subset(&self, keep: impl Fn(FacetId) -> bool) -> CityModel {
-        let mut kept = CityModel { origin: self.origin, ..CityModel::default() };
+        let mut kept = CityModel { origin: self.origin, crs: self.crs.clone(), ..CityModel::default() };
         let mut vertex_of = vec![None; self.vertices.len()];
         let mut object_of = vec![None; self.objects.len()];
         // What is kept before each facet, to count the files' shares anew.
@@ -46,14 +46,16 @@ impl CityModel {
             })
         };
         let outline = facet.outline.iter().map(|&vertex| moved(vertex)).collect();
+        let holes = facet.holes.iter().map(|hole| hole.iter().map(|&vertex| moved(vertex)).collect()).collect();
         let start = kept.triangles.len() as u32;
         let triangles = &self.triangles[facet.triangles.start as usize..facet.triangles.end as usize];
         kept.triangles.extend(triangles.iter().map(|triangle| triangle.map(&mut moved)));
         let triangles = start..kept.triangles.len() as u32;
-        kept.facets.push(Facet { outline, object, triangles, ..facet.clone() });
+        kept.facets.push(Facet { outline, holes, object, triangles, ..facet.clone() });
     }
 
-    /// Writes all outlines as OBJ polygons in file coordinates, one `o` an object.
+    /// Writes all outlines as OBJ polygons in file coordinates, one `o` an object; a facet with holes, which OBJ does not have, as
+    /// its triangles.
     pub fn write_obj(&self, path: &Path) -> io::Result<()> {
         let mut out = BufWriter::new(File::create(path)?);
         write_obj(&mut out, &self.to_obj())?;
@@ -70,8 +72,15 @@ impl CityModel {
         for facets in order.chunk_by(|a, b| a.object == b.object) {
             let first = file.face_ends.len();
             for facet in facets {
-                file.corners.extend(&facet.outline);
-                file.face_ends.push(file.corners.len() as u32);
+                if facet.holes.is_empty() {
+                    file.corners.extend(&facet.outline);
+                    file.face_ends.push(file.corners.len() as u32);
+                    continue;
+                }
+                for triangle in &self.triangles[facet.triangles.start as usize..facet.triangles.end as usize] {
+                    file.corners.extend(triangle);
+                    file.face_ends.push(file.corners.len() as u32);
+                }
             }
             let groups = vec![ObjGroup { name: None, faces: first..file.face_ends.len() }];
             let name = Some(self.object_name(facets[0].object).to_owned());

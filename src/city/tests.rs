@@ -7,7 +7,7 @@ use crate::format::obj::read_obj;
 use crate::geometry::{Point3, Vector3};
 
 fn source(role: CityRole, text: &str) -> Source {
-    Source::from_obj(Path::new("folder/block.obj"), role, CityUp::Z, read_obj(text.as_bytes()).unwrap())
+    Source::from_obj(Path::new("folder/block.obj"), role, read_obj(text.as_bytes()).unwrap())
 }
 
 fn model(text: &str) -> CityModel {
@@ -86,7 +86,8 @@ fn files_share_one_origin_and_their_vertices() {
 #[test]
 fn y_up_is_turned_to_z_up() {
     let file = read_obj(b"v 0 0 0\nv 1 0 0\nv 1 2 0\nf 1 2 3\n").unwrap();
-    let source = Source::from_obj(Path::new("block.obj"), CityRole::City, CityUp::Y, file);
+    let mut source = Source::from_obj(Path::new("block.obj"), CityRole::City, file);
+    source.turn(CityUp::Y);
     let model = build(vec![source]).unwrap();
     assert_eq!(model.vertices[2] + model.origin, Point3::new(1.0, 0.0, 2.0));
     assert_eq!(model.facets[0].plane.normal, Vector3::new(0.0, -1.0, 0.0));

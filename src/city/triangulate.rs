@@ -1,4 +1,4 @@
-//! A ring of points in its plane to triangles, even-odd, without new points unless the ring crosses itself.
+//! An outline and its holes in their plane to triangles, even-odd, without new points unless rings cross.
 
 use std::cmp::Reverse;
 
@@ -22,28 +22,40 @@ const PARTS_PER_EDGE: usize = 16;
 
 type Mesh = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
-/// Triangles of a ring, as indices into the ring, or past its end into `crossings`.
+/// Triangles of rings, as indices into their points, or past the end into `crossings`.
 pub(super) struct Triangles {
     /// Counter-clockwise.
     pub triangles: Vec<[usize; 3]>,
-    /// Points where the ring's edges cross; none in a clean ring.
+    /// Points where edges cross; none in clean rings.
     pub crossings: Vec<[f64; 2]>,
-    /// Whether the ring crosses or overlaps itself.
+    /// Whether rings cross or overlap themselves or each other, or a hole lies outside.
     pub overlaps: bool,
 }
 
-/// Triangulates a ring that runs counter-clockwise by its signed area. `None` where it is too tangled.
+/// Triangulates an outline and its holes, one ring after the other, each ending where `ring_ends` says; whichever way round they
+/// run. `None` where they are too tangled.
 ///
 /// Edges that are walked twice (the bridge to a hole) bound nothing, so holes stay holes.
-pub(super) fn triangulate(ring: &[[f64; 2]]) -> Option<Triangles> {
-    let edges: Vec<[usize; 2]> = (0..ring.len()).map(|at| [at, (at + 1) % ring.len()]).collect();
-    if let Some(triangles) = constrained(ring, &edges) {
-        let overlaps = differs(ring, &triangles);
+pub(super) fn triangulate(points: &[[f64; 2]], ring_ends: &[usize]) -> Option<Triangles> {
+    let edges = edges_of(ring_ends);
+    if let Some(triangles) = constrained(points, &edges) {
+        let overlaps = differs(points, ring_ends, &triangles);
         return Some(Triangles { triangles, crossings: Vec::new(), overlaps });
     }
-    let (points, edges) = cut_at_crossings(ring)?;
-    let triangles = constrained(&points, &edges)?;
-    Some(Triangles { triangles, crossings: points[ring.len()..].to_vec(), overlaps: true })
+    let (with_crossings, edges) = cut_at_crossings(points, &edges)?;
+    let triangles = constrained(&with_crossings, &edges)?;
+    Some(Triangles { triangles, crossings: with_crossings[points.len()..].to_vec(), overlaps: true })
+}
+
+/// From each point to the next of its ring.
+fn edges_of(ring_ends: &[usize]) -> Vec<[usize; 2]> {
+    let mut edges = Vec::with_capacity(ring_ends.last().copied().unwrap_or(0));
+    let mut start = 0;
+    for &end in ring_ends {
+        edges.extend((start..end).map(|at| [at, if at + 1 < end { at + 1 } else { start }]));
+        start = end;
+    }
+    edges
 }
 
 /// Twice the signed area, positive when counter-clockwise.
@@ -193,31 +205,38 @@ fn faces_inside(mesh: &Mesh, walked: &[FixedUndirectedEdgeHandle]) -> Vec<bool> 
     side.into_iter().map(|side| side == Some(true)).collect()
 }
 
-/// Whether the triangles cover another area than the ring winds round.
-fn differs(ring: &[[f64; 2]], triangles: &[[usize; 3]]) -> bool {
-    let covered: f64 = triangles.iter().map(|&[a, b, c]| doubled_area(ring[a], ring[b], ring[c]).abs()).sum();
-    let wound: f64 = (1..ring.len() - 1).map(|at| doubled_area(ring[0], ring[at], ring[at + 1])).sum();
+/// Whether the triangles cover another area than the outline winds round without its holes.
+fn differs(points: &[[f64; 2]], ring_ends: &[usize], triangles: &[[usize; 3]]) -> bool {
+    let covered: f64 = triangles.iter().map(|&[a, b, c]| doubled_area(points[a], points[b], points[c]).abs()).sum();
+    let mut wound = 0.0;
+    let mut start = 0;
+    for &end in ring_ends {
+        let ring = &points[start..end];
+        let fan = (1..ring.len().saturating_sub(1)).map(|at| doubled_area(ring[0], ring[at], ring[at + 1]));
+        let area = fan.sum::<f64>().abs();
+        wound += if start == 0 { area } else { -area };
+        start = end;
+    }
     (covered - wound).abs() > AREA_SHARE * wound.abs()
 }
 
 type PointsAndEdges = (Vec<[f64; 2]>, Vec<[usize; 2]>);
 
-/// The ring with a point put in wherever two of its edges cross. `None` for rings that are too tangled.
-fn cut_at_crossings(ring: &[[f64; 2]]) -> Option<PointsAndEdges> {
+/// The points, with one put in wherever two edges cross. `None` for rings that are too tangled.
+fn cut_at_crossings(ring: &[[f64; 2]], uncut: &[[usize; 2]]) -> Option<PointsAndEdges> {
     let count = ring.len();
     let mut points = ring.to_vec();
     let mut cuts: Vec<Vec<(f64, usize)>> = vec![Vec::new(); count];
-    for ([first, second], [along_first, along_second], point) in crossings(ring)? {
+    for ([first, second], [along_first, along_second], point) in crossings(ring, uncut)? {
         cuts[first].push((along_first, points.len()));
         cuts[second].push((along_second, points.len()));
         points.push(point);
     }
     let mut edges = Vec::with_capacity(count + 2 * (points.len() - count));
-    for (at, cuts) in cuts.iter_mut().enumerate() {
+    for ([start, end], cuts) in uncut.iter().zip(&mut cuts) {
         cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let stops = cuts.iter().map(|cut| cut.1).chain([(at + 1) % count]);
-        let mut from = at;
-        for to in stops {
+        let mut from = *start;
+        for to in cuts.iter().map(|cut| cut.1).chain([*end]) {
             edges.push([from, to]);
             from = to;
         }
@@ -228,17 +247,18 @@ fn cut_at_crossings(ring: &[[f64; 2]]) -> Option<PointsAndEdges> {
 /// Two edges by their numbers, the shares of the way along each, and the point where they cross.
 type Crossing = ([usize; 2], [f64; 2], [f64; 2]);
 
-/// Where a ring crosses itself, in the order of its edges; `None` where that is too often, or too many edges lie beside each
-/// other to tell. Edges are taken in the order in which a line that sweeps along the ring meets them.
-fn crossings(ring: &[[f64; 2]]) -> Option<Vec<Crossing>> {
+/// Where edges cross, in their order; `None` where that is too often, or too many edges lie beside each
+/// other to tell. Edges are taken in the order in which a line that sweeps along the points meets them.
+fn crossings(ring: &[[f64; 2]], edges: &[[usize; 2]]) -> Option<Vec<Crossing>> {
     let count = ring.len();
     let extent = |k: usize| {
         let all = || ring.iter().map(|corner| corner[k]);
         all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min)
     };
     let k = if extent(0) < extent(1) { 1 } else { 0 };
-    let mut spans: Vec<(f64, f64, usize)> = (0..count)
-        .map(|at| [ring[at][k], ring[(at + 1) % count][k]])
+    let mut spans: Vec<(f64, f64, usize)> = edges
+        .iter()
+        .map(|edge| edge.map(|at| ring[at][k]))
         .enumerate()
         .map(|(at, [a, b])| (a.min(b), a.max(b), at))
         .collect();
@@ -247,7 +267,8 @@ fn crossings(ring: &[[f64; 2]]) -> Option<Vec<Crossing>> {
     for (rank, &(_, high, one)) in spans.iter().enumerate() {
         for &(_, _, other) in spans[rank + 1..].iter().take_while(|next| next.0 <= high) {
             let [first, second] = [one.min(other), one.max(other)];
-            let ends = [ring[first], ring[(first + 1) % count], ring[second], ring[(second + 1) % count]];
+            let [[a, b], [c, d]] = [edges[first], edges[second]];
+            let ends = [ring[a], ring[b], ring[c], ring[d]];
             found.extend(crossing(ends).map(|(a, b, point)| ([first, second], [a, b], point)));
             pairs += 1;
         }

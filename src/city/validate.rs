@@ -105,8 +105,10 @@ fn judge(model: &CityModel, facets: &[u32]) -> Shell {
 }
 
 fn edges_of(facet: &Facet) -> impl Iterator<Item = (u32, u32, bool)> + '_ {
-    let next = facet.outline.iter().cycle().skip(1);
-    facet.outline.iter().zip(next).map(|(&from, &to)| (from.min(to), from.max(to), from < to))
+    facet.rings().flat_map(|ring| {
+        let next = ring.iter().cycle().skip(1);
+        ring.iter().zip(next).map(|(&from, &to)| (from.min(to), from.max(to), from < to))
+    })
 }
 
 /// Facets that have the outline of an earlier one of the whole model, and whether that runs the other way round.
@@ -131,12 +133,17 @@ fn doubled(model: &CityModel, facets: std::ops::Range<u32>) -> Vec<(u32, bool)> 
     doubled
 }
 
-/// Equal for outlines of the same vertices in the same or the opposite order, and seldom for others.
+/// Equal for outlines of the same vertices in the same or the opposite order with as many holes, and seldom for others.
 fn key(facet: &Facet) -> [u32; 4] {
     let lowest = facet.outline.iter().copied().min().unwrap_or_default();
     let highest = facet.outline.iter().copied().max().unwrap_or_default();
     let sum = facet.outline.iter().fold(0_u32, |sum, &vertex| sum.wrapping_add(vertex));
-    [lowest, highest, sum, facet.outline.len() as u32]
+    [
+        lowest,
+        highest,
+        sum,
+        facet.rings().map(|ring| ring.len() as u32).fold(0, |all, ring| all.wrapping_mul(31).wrapping_add(ring)),
+    ]
 }
 
 /// The outline from its lowest vertex on, in the direction of the lower neighbour, and whether that is backwards.
@@ -154,25 +161,41 @@ fn canonical(facet: &Facet) -> (Vec<u32>, bool) {
 /// Looks for files in other units or frames than metres about one place.
 pub(super) fn check_extents(model: &CityModel, warnings: &mut Warnings) {
     let boxes: Vec<Option<Extent>> = model.sources.iter().map(|source| extent(model, source.facets.clone())).collect();
-    let Some(Some(city)) = boxes.first() else { return };
+    let is_city = |at: &usize| model.sources[*at].role == CityRole::City;
+    let city_without = |left_out: usize| {
+        let tiles = (0..boxes.len()).filter(is_city).filter(|&at| at != left_out);
+        tiles.filter_map(|at| boxes[at]).reduce(Extent::with)
+    };
     let place = |source: &CitySource| CityPlace { path: source.path.clone(), line: None, object: String::new() };
-    let across_m = (city.high - city.low).xy().amax();
-    if !(SMALLEST_CITY_M..=LARGEST_CITY_M).contains(&across_m) {
+    let Some(city) = city_without(usize::MAX) else { return };
+    if !(SMALLEST_CITY_M..=LARGEST_CITY_M).contains(&city.across_m()) {
+        let across_m = city.across_m();
         warnings.add(CityDefect::OddExtent { across_m }, 1, || place(&model.sources[0]));
     }
-    for (source, other) in model.sources.iter().zip(&boxes).skip(1) {
-        let Some(other) = other else { continue };
-        let gap = (other.low - city.high).sup(&(city.low - other.high)).sup(&Vector3::zeros());
+    for (at, source) in model.sources.iter().enumerate().skip(1) {
+        let (Some(own), Some(city)) = (boxes[at], city_without(at)) else { continue };
+        let gap = (own.low - city.high).sup(&(city.low - own.high)).sup(&Vector3::zeros());
         let distance_m = gap.norm();
-        if distance_m > NEAR_M.max(across_m) {
+        if distance_m > NEAR_M.max(city.across_m()) {
             warnings.add(CityDefect::FarApart { distance_m }, 1, || place(source));
         }
     }
 }
 
+#[derive(Clone, Copy)]
 struct Extent {
     low: Point3<f64>,
     high: Point3<f64>,
+}
+
+impl Extent {
+    fn with(self, other: Extent) -> Extent {
+        Extent { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+    }
+
+    fn across_m(&self) -> f64 {
+        (self.high - self.low).xy().amax()
+    }
 }
 
 fn extent(model: &CityModel, facets: std::ops::Range<u32>) -> Option<Extent> {

@@ -4,15 +4,8 @@ use std::fmt;
 use std::mem::discriminant;
 use std::path::PathBuf;
 
+use super::{CityUnit, CityUp};
 use crate::format::escaped;
-
-/// Share of a city's objects that are inside out from which on a mirror image is as likely: it turns all of them. Whoever
-/// winds single buildings wrongly leaves some right (1,068 of 1,103 were wrong in one published city).
-const MIRROR_SHARE: f64 = 0.9;
-
-/// A mirror image and a model wound inwards are one and the same to geometry, so whoever knows the place must look.
-const MIRROR_REMEDY: &str = "if the city is a mirror image of the place instead (compare the streets with a map), no \
-    pose can be right: two axes are exchanged or one is negated, so write it again with x east, y north, z up";
 
 /// A kind of defect that was tolerated: how often it was met, and where first.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +37,10 @@ pub enum CityDefect {
     NoSurface,
     /// Faces of fewer than three corners; left out.
     TooFewCorners,
+    /// Vertices that are not finite or out of reach; left out.
+    LostVertices,
+    /// Faces that use such a vertex; left out.
+    LostCorner,
     /// Faces without area; left out.
     ZeroArea,
     /// Vertices at exactly the place of an earlier one of the same file; joined with it.
@@ -68,6 +65,30 @@ pub enum CityDefect {
     MixedOrientation { edges: u64 },
     /// Objects with edges that only one facet has.
     OpenShell { open_edges: u64, edges: u64 },
+    /// What a reader of a format passed over, in words.
+    PassedOver { what: &'static str },
+    /// Footprints (level of detail 0) of objects that have nothing else; left out.
+    Footprints,
+    /// Polygons of objects that have nothing up to the level of detail that was asked for; left out.
+    AboveWantedLevel,
+    /// Files of a folder that are no city models; passed over.
+    NoCityFile,
+    /// Files of the city without polygons; left out.
+    EmptyTile,
+    /// Objects with the name of one in another file of the city; both kept.
+    SameObject,
+    /// North, or the latitude, is written before east; exchanged. By the volume of closed shells, so many of them, or by the reference system.
+    NorthFirst { negative: u64, of: u64 },
+    /// Coordinates are degrees; projected about this place, in degrees.
+    Degrees { latitude: f64, longitude: f64, is_latitude_first: bool },
+    /// Files, or what was given, name different reference systems; the first is used for all.
+    OtherCrs { first: String, other: String },
+    /// The middle house is as high as none is in metres.
+    OddHeights { unit: CityUnit, height: f64 },
+    /// So much of the city's area stands upright about y; another axis may be up.
+    UprightAboutY { share: f64, attempt: CityUp },
+    /// Positions are 32-bit numbers this far from zero, so that neighbouring ones lie this far apart.
+    CoarseFloats { step_m: f64 },
     /// The city is as wide as none is: other units than metres, or vertices that belong elsewhere.
     OddExtent { across_m: f64 },
     /// Further files so far from the city that they must be in another frame.
@@ -75,6 +96,14 @@ pub enum CityDefect {
 }
 
 impl CityDefect {
+    /// Whether both are told in one line.
+    fn is_like(&self, other: &CityDefect) -> bool {
+        match (self, other) {
+            (CityDefect::PassedOver { what }, CityDefect::PassedOver { what: other }) => what == other,
+            _ => discriminant(self) == discriminant(other),
+        }
+    }
+
     /// Takes in the figures of the same kind of defect elsewhere.
     fn merge(&mut self, other: &CityDefect) {
         match (self, other) {
@@ -95,6 +124,9 @@ impl CityDefect {
                 *open_edges += others_open;
                 *edges += others;
             }
+            (CityDefect::CoarseFloats { step_m }, CityDefect::CoarseFloats { step_m: other }) => {
+                *step_m = step_m.max(*other);
+            }
             (CityDefect::FarApart { distance_m }, CityDefect::FarApart { distance_m: other_m }) => {
                 *distance_m = distance_m.max(*other_m);
             }
@@ -110,7 +142,7 @@ pub(super) struct Warnings(Vec<CityWarning>);
 impl Warnings {
     /// Counts a defect; asks for the place only when the kind is new.
     pub fn add(&mut self, defect: CityDefect, count: u64, place: impl FnOnce() -> CityPlace) {
-        match self.0.iter_mut().find(|warning| discriminant(&warning.defect) == discriminant(&defect)) {
+        match self.0.iter_mut().find(|warning| warning.defect.is_like(&defect)) {
             _ if count == 0 => {}
             Some(warning) => {
                 warning.count += count;
@@ -135,67 +167,5 @@ impl fmt::Display for CityPlace {
             Some(line) => write!(f, "{}:{line}", escaped(&name)),
             None => write!(f, "{}", escaped(&name)),
         }
-    }
-}
-
-impl fmt::Display for CityWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (one, many) = match self.defect {
-            CityDefect::UnknownLines => ("line begins with an unknown word", "lines begin with an unknown word"),
-            CityDefect::FreeForms => ("curve or surface has no polygons", "curves or surfaces have no polygons"),
-            CityDefect::NoSurface => ("primitive is points or lines", "primitives are points or lines"),
-            CityDefect::TooFewCorners => ("face has less than 3 corners", "faces have less than 3 corners"),
-            CityDefect::ZeroArea => ("face has no area", "faces have no area"),
-            CityDefect::DuplicateVertices => ("vertex repeats an earlier one", "vertices repeat earlier ones"),
-            CityDefect::NonPlanar { .. } => ("polygon is not planar", "polygons are not planar"),
-            CityDefect::SelfIntersecting => {
-                ("polygon crosses or overlaps itself", "polygons cross or overlap themselves")
-            }
-            CityDefect::Tangled => ("polygon is tangled", "polygons are tangled"),
-            CityDefect::Doubled => ("facet stands twice", "facets stand twice"),
-            CityDefect::DoubledReversed => {
-                ("facet stands back to back with its like", "facets stand back to back with their like")
-            }
-            CityDefect::InsideOut { .. } => ("object is wound inside out", "objects are wound inside out"),
-            CityDefect::WoundAgainstTheRest { .. } => {
-                ("object has facets wound against the rest", "objects have facets wound against the rest")
-            }
-            CityDefect::TerrainLooksDown => ("terrain is wound downwards", "terrains are wound downwards"),
-            CityDefect::MixedOrientation { .. } => {
-                ("object has facets whose sides disagree", "objects have facets whose sides disagree")
-            }
-            CityDefect::OpenShell { .. } => ("object is an open shell", "objects are open shells"),
-            CityDefect::OddExtent { .. } => ("city has an odd size", "cities have an odd size"),
-            CityDefect::FarApart { .. } => ("file lies far from the city", "files lie far from the city"),
-        };
-        write!(f, "{} {}", self.count, if self.count == 1 { one } else { many })?;
-        match self.defect {
-            CityDefect::UnknownLines | CityDefect::FreeForms | CityDefect::NoSurface => write!(f, ", passed over")?,
-            CityDefect::TooFewCorners | CityDefect::ZeroArea | CityDefect::Tangled => write!(f, ", left out")?,
-            CityDefect::DuplicateVertices => write!(f, ", joined")?,
-            CityDefect::NonPlanar { worst_m } => write!(f, " (worst by {worst_m:.3} m), split into triangles")?,
-            CityDefect::SelfIntersecting => write!(f, ", kept by the even-odd rule")?,
-            CityDefect::Doubled => write!(f, ", kept")?,
-            CityDefect::DoubledReversed => write!(f, " (party walls, or walls without thickness), kept")?,
-            CityDefect::InsideOut { of } => {
-                write!(f, " (of {of}), turned")?;
-                if self.count as f64 > MIRROR_SHARE * of as f64 {
-                    write!(f, "; {MIRROR_REMEDY}")?;
-                }
-            }
-            CityDefect::WoundAgainstTheRest { facets } => write!(f, " (facets: {facets}), turned")?,
-            CityDefect::TerrainLooksDown => write!(f, ", turned")?,
-            CityDefect::MixedOrientation { edges } => write!(f, " (at {edges} edges), kept as they are")?,
-            CityDefect::OpenShell { open_edges, edges } => {
-                write!(f, " ({open_edges} of {edges} edges belong to one facet alone), kept")?;
-            }
-            CityDefect::OddExtent { across_m } => {
-                write!(f, " ({across_m} m across; units must be metres, and no vertex may stray)")?;
-            }
-            CityDefect::FarApart { distance_m } => {
-                write!(f, " (up to {distance_m:.0} m; all files must be in one frame)")?;
-            }
-        }
-        write!(f, "; first: {}", self.example)
     }
 }

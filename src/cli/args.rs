@@ -1,10 +1,14 @@
 //! What was typed.
 
+mod city;
+
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Parser, Subcommand, ValueEnum};
+
+pub use city::CityArgs;
 
 /// Sets structure-from-motion reconstructions into polyhedral city models.
 #[derive(Parser, Debug)]
@@ -94,7 +98,7 @@ pub struct Common {
     alignment.json of an earlier run is a start, too: by its transform, or else its best_candidate.\n\n\
     Exit status: 0 aligned; 1 any other verdict (alignment.json says why).")]
 pub struct AlignArgs {
-    /// City model: OBJ, glTF or GLB
+    /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
     pub city: PathBuf,
     /// Reconstruction: a folder with a COLMAP model (binary or text), or a PLY cloud
     pub sfm: PathBuf,
@@ -104,9 +108,6 @@ pub struct AlignArgs {
     /// Coarse place of the reconstruction, JSON (see below), or the alignment.json of an earlier run
     #[arg(long, value_name = "FILE")]
     pub start: Option<PathBuf>,
-    /// Further meshes in the same frame as CITY, such as ground; may be given several times
-    #[arg(long, value_name = "FILE")]
-    pub terrain: Vec<PathBuf>,
     /// Folder of label images (PNG, grey, 8 or 16 bit; 0 is no superpixel), named as the photographs
     #[arg(long, value_name = "DIR")]
     pub labels: Option<PathBuf>,
@@ -127,9 +128,8 @@ pub struct AlignArgs {
     /// Probability of a wrong pose called aligned that may be taken, above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
-    /// Axis that is up in OBJ files
-    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
-    pub city_up: CityUpArg,
+    #[command(flatten)]
+    pub city_options: CityArgs,
 }
 
 /// Join partial reconstructions of one place into one, and account for everything
@@ -160,35 +160,27 @@ pub struct MergeArgs {
     /// superpixels; or those planes alone, to study them
     #[arg(long, value_name = "WHICH", value_enum, default_value_t = EvidenceArg::All)]
     pub evidence: EvidenceArg,
-    /// City model in which the parts meet: OBJ, glTF or GLB; needs one --start for every part
+    /// City model in which the parts meet (as CITY of `align`); needs one --start for every part
     #[arg(long, value_name = "CITY")]
     pub city: Option<PathBuf>,
-    /// Further meshes in the same frame as CITY, such as ground; may be given several times
-    #[arg(long, value_name = "FILE")]
-    pub terrain: Vec<PathBuf>,
     /// Coarse place of a part in the city, JSON (see `align --help`), or its alignment.json; once for every part, in their order
     #[arg(long, value_name = "FILE")]
     pub start: Vec<PathBuf>,
-    /// Axis that is up in OBJ files
-    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
-    pub city_up: CityUpArg,
+    #[command(flatten)]
+    pub city_options: CityArgs,
 }
 
 /// Show what the program sees in a city model: counts, extent, planes, warnings
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Example:\n  cityweld planes city.obj --terrain ground.obj -o planes.glb")]
 pub struct PlanesArgs {
-    /// City model: OBJ, glTF or GLB
+    /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
     pub city: PathBuf,
-    /// Further meshes in the same frame as CITY; may be given several times
-    #[arg(long, value_name = "FILE")]
-    pub terrain: Vec<PathBuf>,
     /// File to write: .glb (coloured by plane) or .json
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Axis that is up in OBJ files
-    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
-    pub city_up: CityUpArg,
+    #[command(flatten)]
+    pub city_options: CityArgs,
 }
 
 /// Write a given (or edited) alignment again, in the formats asked for
@@ -197,7 +189,7 @@ pub struct PlanesArgs {
     after_help = "Example:\n  cityweld export city.obj sfm/ --alignment out/alignment.json --format glb,ply -o again"
 )]
 pub struct ExportArgs {
-    /// City model: OBJ, glTF or GLB
+    /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
     pub city: PathBuf,
     /// Reconstruction: a folder with a COLMAP model (binary or text), or a PLY cloud
     pub sfm: PathBuf,
@@ -211,12 +203,8 @@ pub struct ExportArgs {
     /// replaced by --force, as nothing tells it from a model of your own
     #[arg(long, value_name = "FORMATS", value_enum, value_delimiter = ',')]
     pub format: Vec<FormatArg>,
-    /// Further meshes in the same frame as CITY; may be given several times
-    #[arg(long, value_name = "FILE")]
-    pub terrain: Vec<PathBuf>,
-    /// Axis that is up in OBJ files
-    #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
-    pub city_up: CityUpArg,
+    #[command(flatten)]
+    pub city_options: CityArgs,
 }
 
 /// Align the sample that is inside the program: a city block of Rotterdam and a reconstruction of it
@@ -241,12 +229,6 @@ pub struct SolveArgs {
     /// The problem, JSON; `-` is standard input
     #[arg(value_name = "PROBLEM.json")]
     pub problem: String,
-}
-
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CityUpArg {
-    Z,
-    Y,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]

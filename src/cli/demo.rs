@@ -8,7 +8,7 @@ use crate::limits::Limits;
 use anyhow::{Context, Result};
 
 use super::align::carry_out;
-use super::args::{AlignArgs, CityUpArg, DemoArgs, Probability, UpArg};
+use super::args::{AlignArgs, CityArgs, DemoArgs, Probability, UpArg};
 use super::plan::{AlignPlan, keeps_inputs};
 use super::{Outcome, Session};
 
@@ -92,14 +92,13 @@ fn align_args(sample: &Path) -> AlignArgs {
         // Within the sample, so that it never is a place that exists: the true one is set aside already.
         output: sample.join("out"),
         start: Some(sample.join("start.json")),
-        terrain: Vec::new(),
         labels: Some(sample.join("labels")),
         photos: None,
         scale: None,
         accuracy: None,
         up: UpArg::Auto,
         false_alarm: Probability(Limits::default().verdict.false_alarm),
-        city_up: CityUpArg::Z,
+        city_options: CityArgs::default(),
     }
 }
 

@@ -15,11 +15,11 @@ pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     existing_sfm(&args.sfm, &args.city)?;
     let mut given: Vec<Given<'_>> =
         vec![(Role::City, &args.city), (Role::Sfm, &args.sfm), (Role::Alignment, &args.alignment)];
-    given.extend(args.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
+    given.extend(args.city_options.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
     roles::check("export", &given)?;
-    let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
+    let files = CityFiles::new(&args.city, &args.city_options)?;
     let mut inputs = vec![&args.city, &args.sfm, &args.alignment];
-    inputs.extend(&args.terrain);
+    inputs.extend(&args.city_options.terrain);
     keeps_inputs(&args.output, &inputs)?;
     let stored = read_alignment(&args.alignment)?;
     let output = session.begin(&args.output, OutputKind::Folder)?;

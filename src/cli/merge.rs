@@ -55,7 +55,9 @@ fn check(args: &MergeArgs) -> Result<()> {
     }
     roles::check("merge", &paths_with_roles(args))?;
     let mut inputs: Vec<&PathBuf> = args.parts.iter().collect();
-    inputs.extend(args.city.iter().chain(&args.terrain).chain(&args.start).chain(&args.labels).chain(&args.photos));
+    inputs.extend(
+        args.city.iter().chain(&args.city_options.terrain).chain(&args.start).chain(&args.labels).chain(&args.photos),
+    );
     keeps_inputs(&args.output, &inputs)?;
     ensure!(
         args.evidence == EvidenceArg::All || superpixel_source(args).is_some(),
@@ -63,7 +65,8 @@ fn check(args: &MergeArgs) -> Result<()> {
     );
     if args.city.is_none() {
         ensure!(args.start.is_empty(), "--start says where the parts are in a city; give the city with --city");
-        ensure!(args.terrain.is_empty(), "--terrain belongs to a city; give the city with --city");
+        let option = args.city_options.first_given();
+        ensure!(option.is_none(), "{} belongs to a city; give the city with --city", option.unwrap_or_default());
         return Ok(());
     }
     ensure!(
@@ -78,7 +81,7 @@ fn check(args: &MergeArgs) -> Result<()> {
 fn paths_with_roles(args: &MergeArgs) -> Vec<Given<'_>> {
     let mut given: Vec<Given<'_>> = args.parts.iter().map(|path| (Role::Part, path.as_path())).collect();
     given.extend(args.city.iter().map(|path| (Role::CityOption, path.as_path())));
-    given.extend(args.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
+    given.extend(args.city_options.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
     given.extend(args.labels.iter().map(|path| (Role::Labels, path.as_path())));
     given.extend(args.photos.iter().map(|path| (Role::Photos, path.as_path())));
     given.extend(args.start.iter().map(|path| (Role::Start, path.as_path())));
@@ -88,7 +91,7 @@ fn paths_with_roles(args: &MergeArgs) -> Vec<Given<'_>> {
 fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<PreparedCity>> {
     let Some(city) = &args.city else { return Ok(None) };
     session.voice.bar.show("reading the city", 0, 0);
-    let files = CityFiles::new(city, &args.terrain, args.city_up)?;
+    let files = CityFiles::new(city, &args.city_options)?;
     Ok(Some(PreparedCity::new(read_city(&files.city, &files.terrain, &files.options)?)))
 }
 

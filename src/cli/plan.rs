@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::city::{CityOptions, CityUp};
+use crate::city::CityOptions;
 use crate::format::read_start;
 use crate::geometry::Vector3;
 use crate::imagery::SuperpixelSource;
 use crate::{AlignOptions, Up};
 use anyhow::{Context, Result, bail, ensure};
 
-use super::args::{AlignArgs, CityUpArg, UpArg};
+use super::args::{AlignArgs, CityArgs, UpArg};
 use super::roles::{self, Given, Role};
 
 /// An alignment ready to be carried out.
@@ -33,16 +33,16 @@ impl AlignPlan {
     pub fn new(args: &AlignArgs, seed: u64) -> Result<AlignPlan> {
         existing_sfm(&args.sfm, &args.city)?;
         let mut given: Vec<Given<'_>> = vec![(Role::City, &args.city), (Role::Sfm, &args.sfm)];
-        given.extend(args.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
+        given.extend(args.city_options.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
         given.extend(args.labels.iter().map(|path| (Role::Labels, path.as_path())));
         given.extend(args.photos.iter().map(|path| (Role::Photos, path.as_path())));
         given.extend(args.start.iter().map(|path| (Role::Start, path.as_path())));
         roles::check("align", &given)?;
-        let city = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
+        let city = CityFiles::new(&args.city, &args.city_options)?;
         let mut warnings = Vec::new();
         let superpixels = superpixel_source(args, &mut warnings)?;
         let mut inputs = vec![&args.city, &args.sfm];
-        inputs.extend(args.terrain.iter().chain(&args.start).chain(&args.labels).chain(&args.photos));
+        inputs.extend(args.city_options.terrain.iter().chain(&args.start).chain(&args.labels).chain(&args.photos));
         keeps_inputs(&args.output, &inputs)?;
         Ok(AlignPlan {
             options: align_options(args, seed)?,
@@ -56,17 +56,13 @@ impl AlignPlan {
 }
 
 impl CityFiles {
-    pub fn new(city: &Path, terrain: &[PathBuf], up: CityUpArg) -> Result<CityFiles> {
-        existing_file(city, "the city")?;
-        for path in terrain {
-            existing_file(path, "the terrain")?;
+    pub fn new(city: &Path, args: &CityArgs) -> Result<CityFiles> {
+        existing_city(city, "the city")?;
+        for path in &args.terrain {
+            existing_city(path, "the terrain")?;
             ensure!(!same(path, city), "the city is given again as terrain, leave one out: {}", path.display());
         }
-        let up = match up {
-            CityUpArg::Z => CityUp::Z,
-            CityUpArg::Y => CityUp::Y,
-        };
-        Ok(CityFiles { city: city.into(), terrain: terrain.to_vec(), options: CityOptions { up } })
+        Ok(CityFiles { city: city.into(), terrain: args.terrain.clone(), options: args.options() })
     }
 
     /// City and terrain, by their names alone.
@@ -158,11 +154,12 @@ fn superpixel_source(args: &AlignArgs, warnings: &mut Vec<String>) -> Result<Opt
     Ok(labels.or_else(|| args.photos.clone().map(SuperpixelSource::Photos)))
 }
 
-fn existing_file(path: &Path, what: &str) -> Result<()> {
+/// A file, or a folder of them, whatever is in it; a pipe might never end.
+fn existing_city(path: &Path, what: &str) -> Result<()> {
     let place = path.display();
     let found = std::fs::metadata(path).with_context(|| format!("cannot read {what}: {place}"))?;
-    ensure!(!found.is_dir(), "{what} is a folder, expected an OBJ, glTF or GLB file: {place}");
-    ensure!(found.is_file(), "{what} is a pipe or a device, expected an OBJ, glTF or GLB file: {place}");
+    let is_one = found.is_dir() || found.is_file();
+    ensure!(is_one, "{what} is a pipe or a device, expected a file or a folder of files: {place}");
     Ok(())
 }
 

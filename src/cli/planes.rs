@@ -19,9 +19,9 @@ enum Form {
 }
 
 pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
-    let terrain = args.terrain.iter().map(|path| (Role::Terrain, path.as_path()));
+    let terrain = args.city_options.terrain.iter().map(|path| (Role::Terrain, path.as_path()));
     roles::check("planes", &std::iter::once((Role::City, args.city.as_path())).chain(terrain).collect::<Vec<_>>())?;
-    let files = CityFiles::new(&args.city, &args.terrain, args.city_up)?;
+    let files = CityFiles::new(&args.city, &args.city_options)?;
     let output = args.output.as_deref().map(|path| begin(path, args, session)).transpose()?;
     let voice = &session.voice;
 
@@ -59,7 +59,7 @@ fn begin(path: &Path, args: &PlanesArgs, session: &Session) -> Result<(Output, F
         Some("json") => Form::Json,
         _ => bail!("the output's name ends in neither .glb nor .json, so its form is unknown: {}", path.display()),
     };
-    let inputs: Vec<_> = std::iter::once(&args.city).chain(&args.terrain).collect();
+    let inputs: Vec<_> = std::iter::once(&args.city).chain(&args.city_options.terrain).collect();
     keeps_inputs(path, &inputs)?;
     let output = session.begin(path, OutputKind::File)?;
     Ok((output, form))

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
-use crate::city::CityModel;
+use crate::city::{CityContents, CityModel};
 use crate::export::PlaneAttitude;
 use crate::format::escaped;
 use crate::merging::{Account, Merge};
@@ -95,6 +95,15 @@ pub fn of_city(city: &CityModel, planes: &CityPlanes, files: &[String], output: 
         planes.planes.len()
     );
     let mut table = Table::new(&title, 11);
+    // Formats without levels and parts have nothing to tell that the title does not.
+    for source in city.sources.iter().filter(|source| source.contents.polygons.keys().any(Option::is_some)) {
+        contents_rows(&mut table, &source.contents);
+    }
+    if let Some(crs) = &city.crs {
+        let code = crs.epsg.map_or(String::new(), |code| format!("EPSG:{code}, "));
+        let heights = crs.vertical.as_ref().map_or(String::new(), |heights| format!("{heights}, "));
+        table.row("crs", format!("{code}{heights}{}", crs.text));
+    }
     if let Some((low, high)) = city.bounds() {
         let (low, high) = (low + city.origin, high + city.origin);
         for (axis, name) in ["x", "y", "z (up)"].into_iter().enumerate() {
@@ -120,6 +129,18 @@ pub fn of_city(city: &CityModel, planes: &CityPlanes, files: &[String], output: 
     }
     table.row("time", format!("{seconds:.1} s"));
     table.text
+}
+
+/// What a file of the city holds, a row for each level of detail.
+fn contents_rows(table: &mut Table, contents: &CityContents) {
+    let CityContents { format, objects, parts, polygons, holes, .. } = contents;
+    table.row("format", format!("{format}: {objects} objects, {parts} parts, {holes} polygons with holes"));
+    for (lod, counts) in polygons {
+        let level = lod.map_or_else(|| "unsaid".to_owned(), |lod| lod.to_string());
+        let kinds = counts.named().filter(|(_, count)| *count > 0).map(|(kind, count)| format!("{count} {kind}"));
+        let kinds = kinds.collect::<Vec<_>>().join(", ");
+        table.row("  level", format!("{level}: {} polygons ({kinds})", counts.total()));
+    }
 }
 
 /// Verdict, parts, ledger, files and time.

@@ -1,5 +1,6 @@
 //! What the program sees in a city model: its planes, as JSON, and as a GLB coloured by plane.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
@@ -7,8 +8,8 @@ use serde_json::value::{RawValue, to_raw_value};
 
 use super::ExportError;
 use super::gltf::write_colored_city;
-use super::report::ReportError;
-use crate::city::CityModel;
+use super::report::{CrsJson, ReportError};
+use crate::city::{CityContents, CityModel, KindCounts, Lod};
 use crate::geometry::{Point3, Vector3};
 use crate::planes::{CityPlane, CityPlanes};
 
@@ -46,6 +47,9 @@ pub fn planes_report(city: &CityModel, planes: &CityPlanes, files: &[String]) ->
     struct PlanesJson<'a> {
         schema: &'static str,
         files: &'a [String],
+        crs: Option<CrsJson<'a>>,
+        /// What each file holds before levels of detail were chosen.
+        contents: Vec<ContentsJson<'a>>,
         origin: Box<RawValue>,
         low: Box<RawValue>,
         high: Box<RawValue>,
@@ -61,6 +65,8 @@ pub fn planes_report(city: &CityModel, planes: &CityPlanes, files: &[String]) ->
     let report = PlanesJson {
         schema: SCHEMA,
         files,
+        crs: city.crs.as_ref().map(CrsJson::of),
+        contents: city.sources.iter().map(|source| ContentsJson::of(&source.contents)).collect(),
         origin: to_raw_value(city.origin.as_slice())?,
         low: to_raw_value(&absolute(&low))?,
         high: to_raw_value(&absolute(&high))?,
@@ -72,6 +78,26 @@ pub fn planes_report(city: &CityModel, planes: &CityPlanes, files: &[String]) ->
         program: concat!("cityweld ", env!("CARGO_PKG_VERSION")),
     };
     Ok(serde_json::to_string_pretty(&report)? + "\n")
+}
+
+#[derive(Serialize)]
+struct ContentsJson<'a> {
+    format: &'a str,
+    objects: usize,
+    parts: usize,
+    /// By level of detail, then by kind; what is not there is left out.
+    polygons: BTreeMap<String, BTreeMap<&'static str, usize>>,
+    holes: usize,
+}
+
+impl ContentsJson<'_> {
+    fn of(contents: &CityContents) -> ContentsJson<'_> {
+        let CityContents { format, objects, parts, polygons, holes, .. } = contents;
+        let level = |lod: &Option<Lod>| lod.map_or_else(|| "unsaid".to_owned(), |lod| lod.to_string());
+        let kinds = |counts: &KindCounts| counts.named().filter(|(_, count)| *count > 0).collect();
+        let polygons = polygons.iter().map(|(lod, counts)| (level(lod), kinds(counts))).collect();
+        ContentsJson { format, objects: *objects, parts: *parts, polygons, holes: *holes }
+    }
 }
 
 #[derive(Serialize)]

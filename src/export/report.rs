@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
-use crate::city::CityModel;
+use crate::city::{CityModel, Crs};
 use crate::geometry::Similarity;
 use crate::reconstruction::Reconstruction;
 use crate::verdict::{Alignment, Certainty, Freedom, ModelErrors, PlaneSupport, Support, Verdict};
@@ -20,6 +20,9 @@ pub struct InputSummary {
 #[derive(Clone, Debug, Serialize)]
 pub struct CityCounts {
     pub files: Vec<String>,
+    /// Stands for itself in the report.
+    #[serde(skip)]
+    pub crs: Option<Crs>,
     pub objects: usize,
     pub facets: usize,
     pub triangles: usize,
@@ -37,7 +40,13 @@ pub struct SfmCounts {
 
 impl CityCounts {
     pub fn of(city: &CityModel, files: Vec<String>) -> CityCounts {
-        CityCounts { files, objects: city.objects.len(), facets: city.facets.len(), triangles: city.triangles.len() }
+        CityCounts {
+            files,
+            crs: city.crs.clone(),
+            objects: city.objects.len(),
+            facets: city.facets.len(),
+            triangles: city.triangles.len(),
+        }
     }
 }
 
@@ -86,6 +95,7 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
             })
             .collect::<Result<_, serde_json::Error>>()?,
         certainty: CertaintyJson::of(&alignment.certainty),
+        crs: input.city.crs.as_ref().map(CrsJson::of),
         origin: to_raw_value(&alignment.origin.as_slice())?,
         center: to_raw_value(&alignment.center.coords.as_slice())?,
         radius: alignment.radius,
@@ -116,6 +126,8 @@ struct AlignmentJson<'a> {
     best_candidate: Option<SimilarityJson>,
     alternatives: Vec<AlternativeJson<'a>>,
     certainty: CertaintyJson,
+    /// Of city coordinates; null where neither the files nor the user say it.
+    crs: Option<CrsJson<'a>>,
     origin: Box<RawValue>,
     /// What `covariance` is about.
     center: Box<RawValue>,
@@ -131,6 +143,19 @@ struct AlignmentJson<'a> {
     warnings: &'a [String],
     input: &'a InputSummary,
     program: &'static str,
+}
+
+#[derive(Serialize)]
+pub(super) struct CrsJson<'a> {
+    text: &'a str,
+    epsg: Option<u32>,
+    vertical: Option<&'a str>,
+}
+
+impl CrsJson<'_> {
+    pub(super) fn of(crs: &Crs) -> CrsJson<'_> {
+        CrsJson { text: &crs.text, epsg: crs.epsg, vertical: crs.vertical.as_deref() }
+    }
 }
 
 #[derive(Serialize)]

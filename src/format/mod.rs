@@ -1,6 +1,7 @@
 //! Raw records as the specifications of the file formats write them, both directions.
 
 mod alignment;
+pub mod cityjson;
 pub mod colmap;
 pub mod file;
 mod escape;
@@ -12,6 +13,7 @@ mod problem;
 pub mod ply;
 mod ply_row;
 mod start;
+pub mod surfaces;
 mod text;
 
 pub use alignment::{StoredAlignment, read_alignment};

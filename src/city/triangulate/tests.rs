@@ -1,5 +1,10 @@
 use super::*;
 
+/// An outline alone.
+fn triangulate(ring: &[[f64; 2]]) -> Option<Triangles> {
+    super::triangulate(ring, &[ring.len()])
+}
+
 /// Area of the triangles; all run counter-clockwise.
 fn area(ring: &[[f64; 2]]) -> Option<f64> {
     let made = triangulate(ring)?;
@@ -177,5 +182,49 @@ proptest! {
         let made = area(&ring).unwrap();
         prop_assert!((made - twice / 2.0).abs() < 1e-6 * twice, "{} {}", made, twice / 2.0);
         prop_assert!(!overlaps(&ring));
+    }
+}
+
+/// The square and holes of their own: triangles, their area, and whether something overlaps.
+fn with_holes(holes: &[&[[f64; 2]]]) -> (usize, f64, bool) {
+    let rings: Vec<&[[f64; 2]]> = std::iter::once(&SQUARE[..]).chain(holes.iter().copied()).collect();
+    let points = rings.concat();
+    let ends: Vec<usize> = (1..=rings.len()).map(|count| rings[..count].concat().len()).collect();
+    let made = super::triangulate(&points, &ends).unwrap();
+    let points = [points, made.crossings].concat();
+    let areas = made.triangles.iter().map(|&[a, b, c]| doubled_area(points[a], points[b], points[c]) / 2.0);
+    (made.triangles.len(), areas.sum(), made.overlaps)
+}
+
+const HOLE: [[f64; 2]; 4] = [[2.0, 2.0], [2.0, 4.0], [4.0, 4.0], [4.0, 2.0]];
+
+#[test]
+fn holes_of_their_own_stay_open_whichever_way_round_they_run() {
+    let backwards: Vec<_> = HOLE.iter().rev().copied().collect();
+    assert_eq!(with_holes(&[&HOLE]), (8, 96.0, false));
+    assert_eq!(with_holes(&[&backwards]), (8, 96.0, false));
+    let other = HOLE.map(|[x, y]| [x + 4.0, y + 4.0]);
+    assert_eq!(with_holes(&[&HOLE, &other]), (14, 92.0, false));
+}
+
+#[test]
+fn a_hole_that_touches_the_outline_or_another_hole_in_a_corner_is_clean() {
+    assert_eq!(with_holes(&[&[[0.0, 0.0], [4.0, 2.0], [2.0, 4.0]]]).1, 94.0);
+    let beside = [[4.0, 4.0], [4.0, 6.0], [6.0, 6.0], [6.0, 4.0]];
+    let (_, area, overlaps) = with_holes(&[&HOLE, &beside]);
+    assert_eq!((area, overlaps), (92.0, false));
+}
+
+#[test]
+fn holes_that_stick_out_or_overlap_or_repeat_are_told() {
+    for (holes, area) in [
+        (vec![HOLE.map(|[x, y]| [x - 3.0, y])], 98.0 + 2.0),
+        (vec![HOLE.map(|[x, y]| [x + 20.0, y])], 104.0),
+        (vec![HOLE, HOLE.map(|[x, y]| [x + 1.0, y])], 100.0 - 4.0),
+        (vec![HOLE, HOLE], 100.0),
+    ] {
+        let holes: Vec<&[[f64; 2]]> = holes.iter().map(|hole| &hole[..]).collect();
+        let found = with_holes(&holes);
+        assert!((found.1 - area).abs() < 1e-9 && found.2, "{found:?}, expected {area}");
     }
 }

@@ -19,6 +19,13 @@ const LOOKED_AT: u64 = 1 << 16;
 const FOLDERS_LOOKED_AT: usize = 200;
 const IMAGES_LOOKED_AT: usize = 64;
 
+/// Files of a folder that are looked into for a city, and their endings.
+const CITIES_LOOKED_AT: usize = 8;
+const CITY_ENDINGS: [&str; 6] = ["obj", "gltf", "glb", "json", "jsonl", "cityjson"];
+
+/// What the JSON of a city has near its beginning: glTF, CityJSON.
+const CITY_KEYS: [&str; 3] = ["\"asset\"", "\"CityJSON", "\"CityObjects\""];
+
 /// Where a model is read from below the folder that is given, without a word.
 const MODEL_SUBFOLDERS: [&str; 4] = ["", "sparse/0", "sparse", "0"];
 
@@ -69,7 +76,7 @@ impl Glance {
             path.extension().is_some_and(|is| endings.iter().any(|ending| is.eq_ignore_ascii_case(ending)))
         };
         let is_city = is_glb(&start)
-            || (is_json && json.is_none() && (is_named(&["gltf"]) || text.contains("\"asset\"")))
+            || (is_json && json.is_none() && (is_named(&["gltf"]) || CITY_KEYS.iter().any(|key| text.contains(key))))
             || (!is_json && !is_cloud && (is_named(&["obj"]) || text.lines().any(is_obj_vertex)));
         let stands_for_model = path.file_stem().is_some_and(|stem| MODEL_STEMS.iter().any(|known| stem == *known))
             && !is_city
@@ -88,8 +95,9 @@ impl Glance {
                 _ => {}
             }
         }
-        let mut looked_at = 0;
-        let mut folders = VecDeque::from([path.to_path_buf()]);
+        let (mut looked_at, mut cities_looked_at) = (0, 0);
+        let top = path.to_path_buf();
+        let mut folders = VecDeque::from([top.clone()]);
         while let Some(folder) = folders.pop_front().filter(|_| looked_at < FOLDERS_LOOKED_AT) {
             looked_at += 1;
             if found.model.is_none() && missing_files(&folder).is_empty() {
@@ -99,11 +107,15 @@ impl Glance {
             for path in entries(&folder) {
                 if path.is_dir() {
                     folders.push_back(path);
+                } else if folder == top && is_city_file(&path, &mut cities_looked_at) {
+                    found.is_city = true;
                 } else if images < IMAGES_LOOKED_AT {
                     images += usize::from(found.adds_image(path));
                 }
             }
         }
+        // Models of a city may lie beside a reconstruction of it.
+        found.is_city &= found.model.is_none();
         found
     }
 
@@ -191,13 +203,23 @@ impl Glance {
 
 fn expected(role: Role) -> &'static str {
     match role {
-        Role::City | Role::Terrain | Role::CityOption => "a city model (OBJ, glTF or GLB)",
+        Role::City | Role::Terrain | Role::CityOption => "a city model (OBJ, glTF, GLB or CityJSON)",
         Role::Sfm | Role::Part => "a reconstruction (a folder with a COLMAP model, or a PLY cloud)",
         Role::Start => "a start (JSON), or an alignment.json",
         Role::Alignment => "an alignment.json",
         Role::Labels => "a folder of label images (PNG, grey)",
         Role::Photos => "a folder of images (JPEG or PNG)",
     }
+}
+
+/// Whether one of the first files of a folder is a city model; others are not opened.
+fn is_city_file(path: &Path, looked_at: &mut usize) -> bool {
+    let may_be = path.extension().is_some_and(|is| CITY_ENDINGS.iter().any(|ending| is.eq_ignore_ascii_case(ending)));
+    if !may_be || *looked_at >= CITIES_LOOKED_AT {
+        return false;
+    }
+    *looked_at += 1;
+    Glance::at_file(path).is_city
 }
 
 fn is_obj_vertex(line: &str) -> bool {

@@ -9,6 +9,8 @@ fn city() -> CityModel {
     let vertices = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 2.0], [9.0, 9.0, 1.0]];
     let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [1, 2, 4]];
     let facet = |index: usize, object| Facet {
+        holes: Vec::new(),
+        kind: None,
         outline: triangles[index].to_vec(),
         plane: Plane { normal: Vector3::z(), offset: 0.0 },
         area: 1.0,

@@ -10,6 +10,7 @@ use super::piece::{pieces, read_piece};
 /// What an OBJ file holds that is a mesh. Materials, texture coordinates and normals are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjFile {
+    /// Finite but for those that `oddities` counts as lost.
     pub positions: Vec<[f64; 3]>,
     /// What stands under each `o` line that has faces, in file order.
     pub objects: Vec<ObjObject>,
@@ -45,6 +46,8 @@ pub struct ObjGroup {
 pub struct ObjOddities {
     /// `f` lines with fewer than three corners.
     pub short_faces: LineTally,
+    /// Vertices that are not finite, or out of reach; they stand as NaN.
+    pub lost_vertices: LineTally,
     /// Lines that begin with a word OBJ does not know.
     pub unknown_lines: LineTally,
     /// Free-form curves and surfaces (`curv`, `surf`), which have no polygons.
@@ -55,6 +58,7 @@ impl ObjOddities {
     /// Takes in what follows after `lines_before` lines.
     pub(super) fn append(&mut self, later: &ObjOddities, lines_before: u32) {
         self.short_faces.append(later.short_faces, lines_before);
+        self.lost_vertices.append(later.lost_vertices, lines_before);
         self.unknown_lines.append(later.unknown_lines, lines_before);
         self.free_forms.append(later.free_forms, lines_before);
     }
@@ -101,10 +105,8 @@ pub enum ObjProblem {
     TooFewCoordinates { found: usize },
     #[error("vertex coordinate `{token}` is not a number, expected `v x y z` with decimal points")]
     NotANumber { token: String },
-    #[error(
-        "vertex coordinate `{token}` is not a finite number within {limit:e} m of zero; remove or repair the vertex"
-    )]
-    OutOfReach { token: String, limit: f64 },
+    #[error("the file is cut off in the middle of its last line, `{line}`; get it again")]
+    CutOff { line: String },
     #[error("face index {index} points outside the file, which has {vertices} vertices; indices count from 1")]
     IndexOutOfRange { index: u64, vertices: usize },
     #[error("a negative face index counts back past the first vertex of the file")]

@@ -57,6 +57,8 @@ const PASSED_OVER: [&[u8]; 30] = [
 pub(super) struct ObjGuard<'a> {
     rest: &'a [u8],
     line_end: u8,
+    /// Whether the line that was read last has its end; only the file's last may lack it.
+    is_ended: bool,
     clean: Vec<u8>,
     taken: usize,
     /// Line of each line that was handed on.
@@ -98,6 +100,7 @@ impl<'a> ObjGuard<'a> {
         ObjGuard {
             rest: piece,
             line_end,
+            is_ended: true,
             clean: format!("o {CONTINUED}\ng {CONTINUED}\n").into_bytes(),
             taken: 0,
             clean_lines: vec![0, 0],
@@ -135,7 +138,8 @@ impl<'a> ObjGuard<'a> {
         while self.clean.len() < BATCH_BYTES && !self.rest.is_empty() {
             let number = self.lines + 1;
             let line = self.next_line();
-            if let Err(problem) = self.take_line(&line, number) {
+            let whole = if self.is_ended { Ok(()) } else { refuse_cut(&line) };
+            if let Err(problem) = whole.and_then(|()| self.take_line(&line, number)) {
                 return Err(ObjError { line: number, object: self.name(), problem });
             }
         }
@@ -162,7 +166,9 @@ impl<'a> ObjGuard<'a> {
     }
 
     fn next_physical_line(&mut self) -> &'a [u8] {
-        let end = memchr::memchr(self.line_end, self.rest).unwrap_or(self.rest.len());
+        let found = memchr::memchr(self.line_end, self.rest);
+        self.is_ended = found.is_some();
+        let end = found.unwrap_or(self.rest.len());
         let line = &self.rest[..end];
         self.rest = self.rest.get(end + 1..).unwrap_or(&[]);
         self.lines += 1;
@@ -173,7 +179,13 @@ impl<'a> ObjGuard<'a> {
         let mut words = words(line);
         match words.next() {
             None => {}
-            Some(b"v") => self.positions.push(position(words)?),
+            Some(b"v") => {
+                let position = position(words)?;
+                if position.iter().any(|value| value.is_nan()) {
+                    self.oddities.lost_vertices.add(number);
+                }
+                self.positions.push(position);
+            }
             Some(b"f" | b"fo") => self.take_face(words, number)?,
             Some(b"o") => self.take_object(line, number),
             Some(b"g") => self.take_group(line, number),
@@ -265,6 +277,31 @@ fn is_space(byte: u8) -> bool {
 pub(super) fn is_free_text(line: &[u8]) -> bool {
     words(line).next().is_some_and(|word| word[0] == b'#' || matches!(word, b"mtllib" | b"usemtl" | b"usemap"))
 }
+
+/// Refuses a last line without an end that is plainly the beginning of one: too few corners or coordinates, a corner of another form
+/// than the first (`f 1/2/3 4/5`), half a keyword. A number that lost its last digits looks like any other.
+fn refuse_cut(line: &[u8]) -> Result<(), ObjProblem> {
+    let mut words = words(line);
+    let Some(keyword) = words.next() else { return Ok(()) };
+    let rest: Vec<&[u8]> = words.take_while(|word| word[0] != b'#').collect();
+    let form = |word: &&[u8]| {
+        let texts = word.split(|byte| *byte == b'/').map(<[u8]>::is_empty);
+        texts.collect::<Vec<bool>>()
+    };
+    let is_cut = match keyword {
+        b"f" | b"fo" => rest.len() < 3 || rest.first().map(form) != rest.last().map(form),
+        b"v" => rest.len() < 3,
+        word => {
+            let is_known = word.starts_with(b"#") || [&b"o"[..], b"g"].contains(&word) || PASSED_OVER.contains(&word);
+            !is_known && rest.is_empty() && PASSED_OVER.iter().any(|known| known.starts_with(word))
+        }
+    };
+    let line = || String::from_utf8_lossy(line).chars().take(SHOWN).collect();
+    if is_cut { Err(ObjProblem::CutOff { line: line() }) } else { Ok(()) }
+}
+
+/// Letters of a line that a message shows.
+const SHOWN: usize = 60;
 
 fn position<'w>(words: impl Iterator<Item = &'w [u8]>) -> Result<[f64; 3], ObjProblem> {
     let mut position = [0.0; 3];

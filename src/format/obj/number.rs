@@ -11,14 +11,13 @@ const EXACT_WHOLE: u64 = 1 << 53;
 /// Powers of ten that are exact in f64, as far as they are needed.
 const EXACT_POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 
-/// A coordinate: any decimal number within reach.
+/// A coordinate: any decimal number; NaN where it is out of reach.
 pub(super) fn coordinate(word: &[u8]) -> Result<f64, ObjProblem> {
-    let token = || String::from_utf8_lossy(word).into_owned();
     let value = plain_decimal(word).or_else(|| std::str::from_utf8(word).ok()?.parse().ok());
     match value {
         Some(value) if value.abs() <= COORDINATE_LIMIT => Ok(value),
-        Some(_) => Err(ObjProblem::OutOfReach { token: token(), limit: COORDINATE_LIMIT }),
-        None => Err(ObjProblem::NotANumber { token: token() }),
+        Some(_) => Ok(f64::NAN),
+        None => Err(ObjProblem::NotANumber { token: String::from_utf8_lossy(word).into_owned() }),
     }
 }
 
@@ -71,9 +70,9 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_is_no_place() {
+    fn what_is_no_place_is_nan_and_what_is_no_number_is_refused() {
         for word in ["nan", "inf", "-infinity", "1e300", "1000000001", "99999999999999999999999"] {
-            assert!(matches!(coordinate(word.as_bytes()), Err(ObjProblem::OutOfReach { .. })), "{word}");
+            assert!(coordinate(word.as_bytes()).unwrap().is_nan(), "{word}");
         }
         for word in ["", "-", ".", "1,5", "1.2.3", "x", "0x10", "1d5", "\u{661}"] {
             assert!(matches!(coordinate(word.as_bytes()), Err(ObjProblem::NotANumber { .. })), "{word}");

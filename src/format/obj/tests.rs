@@ -136,11 +136,32 @@ fn refuses_vertices_that_are_no_places() {
         ("v 1 2", ObjProblem::TooFewCoordinates { found: 2 }),
         ("v", ObjProblem::TooFewCoordinates { found: 0 }),
         ("v 1 2 # 3", ObjProblem::TooFewCoordinates { found: 2 }),
-        ("v 1 nan 3", ObjProblem::OutOfReach { token: "nan".to_owned(), limit: 1e9 }),
         ("v 1 2,5 3", ObjProblem::NotANumber { token: "2,5".to_owned() }),
     ] {
         let error = error(&format!("o house\n{SQUARE}{line}\nf 1 2 3\n"));
         assert_eq!((error.line, error.object.as_deref(), error.problem), (6, Some("house"), problem));
+    }
+}
+
+#[test]
+fn a_vertex_that_is_nowhere_is_counted_and_keeps_its_number() {
+    let file = read(&format!("{SQUARE}v 1 nan 3\nv 1e300 0 0\nv 5 5 5\nf 1 2 7\n"));
+    assert_eq!(file.oddities.lost_vertices, LineTally { count: 2, first_line: 5 });
+    assert_eq!((file.positions[6], &file.corners[..]), ([5.0, 5.0, 5.0], &[0, 1, 6][..]));
+}
+
+#[test]
+fn a_last_line_that_is_plainly_cut_is_refused() {
+    for cut in ["f 1 2", "f 1/2/3 2/2/3 3/", "f 1/2/3 2/2/3 3/2", "f 1//3 2//3 3", "v 1 2", "v", "use", "mtll"] {
+        let text = format!("o house\n{SQUARE}f 1 2 3\n{cut}");
+        let error = error(&text);
+        let expected = ObjProblem::CutOff { line: cut.to_owned() };
+        assert_eq!((error.line, error.object.as_deref(), error.problem), (7, Some("house"), expected));
+    }
+    for whole in
+        ["f 1 2 3", "f 1/1 2/1 3/1", "f 1 2 3 # end", "v 1 2 3", "# us", "usemtl x", "g", "s off", "hello there"]
+    {
+        read(&format!("o house\n{SQUARE}f 1 2 3\n{whole}"));
     }
 }
 

@@ -13,6 +13,8 @@ fn two_walls() -> CityModel {
         let start = city.triangles.len() as u32;
         city.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         city.facets.push(Facet {
+            holes: Vec::new(),
+            kind: None,
             outline: (first..first + 4).collect(),
             plane: Plane::through(&Point3::new(x, 0.0, 0.0), &Vector3::new(side, 0.0, 0.0)).unwrap(),
             area: 60.0,

@@ -1,0 +1,88 @@
+//! How city files are to be taken.
+
+use super::levels::CityLod;
+
+/// How to take city files.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct CityOptions {
+    /// Which axis points up; where `None`, as the format has it: y in glTF, z in all others.
+    pub up: Option<CityUp>,
+    /// Which level of detail is taken, where a file has several.
+    pub lod: CityLod,
+    /// What coordinates are in; metres where `None`, with a warning where the heights of houses deny it.
+    pub unit: Option<CityUnit>,
+    /// Added to every coordinate, metres (for models that were shifted to be written).
+    pub origin: [f64; 3],
+    /// Reference system of files that do not say theirs, such as `EPSG:25832+7837`.
+    pub crs: Option<String>,
+}
+
+impl CityOptions {
+    pub fn with_up(self, up: CityUp) -> CityOptions {
+        CityOptions { up: Some(up), ..self }
+    }
+
+    pub fn with_lod(self, lod: CityLod) -> CityOptions {
+        CityOptions { lod, ..self }
+    }
+
+    pub fn with_unit(self, unit: CityUnit) -> CityOptions {
+        CityOptions { unit: Some(unit), ..self }
+    }
+
+    /// Metres.
+    pub fn with_origin(self, origin: [f64; 3]) -> CityOptions {
+        CityOptions { origin, ..self }
+    }
+
+    pub fn with_crs(self, crs: impl Into<String>) -> CityOptions {
+        CityOptions { crs: Some(crs.into()), ..self }
+    }
+}
+
+/// The axis that points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CityUp {
+    #[default]
+    Z,
+    /// (x, y, z) becomes (x, -z, y).
+    Y,
+}
+
+/// What coordinates are in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CityUnit {
+    #[default]
+    Metre,
+    Centimetre,
+    Millimetre,
+    /// International foot, 0.3048 m.
+    Foot,
+    /// Foot of the United States' survey, 1200 / 3937 m.
+    UsFoot,
+}
+
+impl CityUnit {
+    /// Metres of one unit.
+    pub fn metres(self) -> f64 {
+        match self {
+            CityUnit::Metre => 1.0,
+            CityUnit::Centimetre => 0.01,
+            CityUnit::Millimetre => 0.001,
+            CityUnit::Foot => 0.3048,
+            CityUnit::UsFoot => 1200.0 / 3937.0,
+        }
+    }
+
+    /// As the command line names it.
+    pub fn word(self) -> &'static str {
+        match self {
+            CityUnit::Metre => "m",
+            CityUnit::Centimetre => "cm",
+            CityUnit::Millimetre => "mm",
+            CityUnit::Foot => "ft",
+            CityUnit::UsFoot => "us-ft",
+        }
+    }
+}

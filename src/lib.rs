@@ -95,8 +95,10 @@ pub mod types {
         Unbalanced,
     };
     pub use crate::planes::CityPlanes;
+    pub use crate::format::ply::{CloudField, FieldKind};
     pub use crate::reconstruction::{
-        CameraIndex, ColmapParts, ImageIndex, PointIndex, ReconstructionError, ReconstructionWarning, WarningKind,
+        CameraIndex, CloudCrs, ColmapParts, ImageIndex, KnownPositions, LasPacking, PointIndex, PoseReading,
+        ReconstructionError, ReconstructionWarning, SfmFormat, SfmSource, Sight, WarningKind, recognise,
     };
     pub use crate::robust::{Chart, Matrix7};
     pub use crate::verdict::{FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary, Support};

@@ -1,18 +1,27 @@
 //! Raw records as the specifications of the file formats write them, both directions.
 
 mod alignment;
+pub mod bundler;
 pub mod colmap;
+pub mod e57;
 pub mod file;
 mod escape;
 pub mod gltf;
 mod kind;
+pub mod las;
+pub mod nerfstudio;
+pub mod nvm;
 pub mod obj;
+pub mod openmvg;
+pub mod opensfm;
+pub mod picture_size;
 mod placement;
 mod problem;
 pub mod ply;
-mod ply_row;
+pub mod sfm_file;
 mod start;
 mod text;
+pub mod wkt;
 
 pub use alignment::{StoredAlignment, read_alignment};
 pub use escape::escaped;

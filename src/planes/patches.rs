@@ -209,7 +209,7 @@ fn outward_hints(r: &Reconstruction, slots: &[Option<u32>], found: &Patches) -> 
         if r.images.is_empty() {
             hints[slot] += r.normals.get(i).copied().unwrap_or_default();
         }
-        for (image, _) in r.track(PointIndex(i as u32)) {
+        for (image, _) in r.seen_by(PointIndex(i as u32)) {
             let to_camera = found.cameras[image.0 as usize] - found.points[slot];
             hints[slot] += to_camera.try_normalize(0.0).unwrap_or_default();
         }
@@ -224,7 +224,7 @@ fn viewers(r: &Reconstruction, slots: &[Option<u32>], found: &Patches) -> Vec<[O
         let Some(slot) = slot.map(|s| s as usize) else { continue };
         let distance = |camera: u32| (found.cameras[camera as usize] - found.points[slot]).norm_squared();
         let [nearest, farthest]: &mut [Option<u32>; 2] = &mut viewers[slot];
-        for &(image, _) in r.track(PointIndex(i as u32)) {
+        for &(image, _) in r.seen_by(PointIndex(i as u32)) {
             if nearest.is_none_or(|n| distance(image.0) < distance(n)) {
                 *nearest = Some(image.0);
             }

@@ -4,6 +4,8 @@
 #[derive(Debug)]
 pub(super) enum Fault {
     Unreadable(std::io::Error),
+    /// Text of 16 bits a character.
+    Utf16,
     Malformed { at: u64, object: String, expected: String, got: String },
 }
 

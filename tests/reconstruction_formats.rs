@@ -1,6 +1,6 @@
 //! Reconstructions in the forms that people have them: LAS, E57, OpenSfM, nerfstudio, OpenMVG, Bundler, NVM.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use cityweld::read_reconstruction;
 use serde_json::Value;

@@ -20,7 +20,6 @@ pub enum E57Error {
 /// What a file says of its points.
 #[derive(Clone, Debug, Default)]
 pub struct E57Cloud {
-    pub scans: usize,
     /// At their scan's pose.
     pub positions: Vec<[f64; 3]>,
     /// One per point, or empty where any scan has none.
@@ -105,7 +104,7 @@ impl Collector {
         let crs = crs.map(str::trim).filter(|text| !text.is_empty()).map(str::to_owned);
         let has_intensity = scans.iter().any(|scan| scan.has_intensity());
         Collector {
-            cloud: E57Cloud { scans: scans.len(), not_carried, crs, ..E57Cloud::default() },
+            cloud: E57Cloud { not_carried, crs, ..E57Cloud::default() },
             has_colors: !scans.is_empty() && scans.iter().all(|scan| scan.has_color()),
             intensity: has_intensity.then(|| CloudField::new("intensity", FieldKind::F32)),
             scan: (scans.len() > 1).then(|| CloudField::new("scan", FieldKind::U32)),

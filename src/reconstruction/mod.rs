@@ -12,6 +12,7 @@ mod consistency;
 mod frames;
 mod ids;
 mod model;
+mod names;
 mod nerfstudio;
 mod nvm;
 mod openmvg;
@@ -30,6 +31,7 @@ pub use model::{
     CameraIndex, CloudCrs, ColmapParts, Image, ImageIndex, KnownPositions, LasPacking, Observation, PointIndex,
     Reconstruction, SfmFormat, Sight,
 };
+pub use names::{AmbiguousName, NameMatch, match_names};
 pub use read::{ReconstructionError, read_reconstruction};
 pub use recognise::{SfmSource, recognise};
 pub use warning::{ReconstructionWarning, WarningKind};

@@ -88,6 +88,7 @@ pub mod types {
     pub use crate::city::{CityDefect, CityError, CityPlace, CityRole, CitySource, CityWarning, FacetId, ObjectId};
     pub use crate::export::{ExportError, OutputError, ReportError};
     pub use crate::format::PlacementError;
+    pub use crate::format::ply::{CloudField, FieldKind};
     pub use crate::geometry::{Camera, CameraModel, StartError};
     pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};
     pub use crate::merging::{
@@ -95,7 +96,6 @@ pub mod types {
         Unbalanced,
     };
     pub use crate::planes::CityPlanes;
-    pub use crate::format::ply::{CloudField, FieldKind};
     pub use crate::reconstruction::{
         CameraIndex, CloudCrs, ColmapParts, ImageIndex, KnownPositions, LasPacking, PointIndex, PoseReading,
         ReconstructionError, ReconstructionWarning, SfmFormat, SfmSource, Sight, WarningKind, recognise,

@@ -44,8 +44,7 @@ pub fn read_e57(path: &Path) -> Result<E57Cloud, E57Error> {
     let told = |error: e57::Error| super::escaped(&error.to_string()).to_string();
     let file = open_regular(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
-    let mut reader =
-        E57Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(error)))?;
+    let mut reader = E57Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(error)))?;
     let scans = reader.pointclouds();
     let mut cloud = Collector::new(&scans, reader.coordinate_metadata());
     for (number, scan) in scans.iter().enumerate() {
@@ -94,11 +93,8 @@ struct Collector {
 
 impl Collector {
     fn new(scans: &[PointCloud], crs: Option<&str>) -> Collector {
-        let mut not_carried: Vec<String> = scans
-            .iter()
-            .flat_map(|scan| &scan.prototype)
-            .filter_map(|record| not_carried(&record.name))
-            .collect();
+        let mut not_carried: Vec<String> =
+            scans.iter().flat_map(|scan| &scan.prototype).filter_map(|record| not_carried(&record.name)).collect();
         not_carried.sort();
         not_carried.dedup();
         let crs = crs.map(str::trim).filter(|text| !text.is_empty()).map(str::to_owned);

@@ -70,8 +70,7 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
     check_head(&mut file, length).map_err(|problem| fault("header".into(), problem))?;
     file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
     let told = |error: las::Error| super::escaped(&error.to_string()).to_string();
-    let mut reader =
-        las::Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(error)))?;
+    let mut reader = las::Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(error)))?;
     let header = reader.header().clone();
     let count = header.number_of_points();
     check_count(&header, length).map_err(|problem| fault("header".into(), problem))?;
@@ -168,8 +167,11 @@ impl Collector {
         let records = piece.raw_bytes().chunks_exact(piece.record_len());
         // The flags of withheld points: bit 7 of the class before version 1.4, bit 2 of the flags after.
         let withheld = records.map(|record| if is_extended { record[15] & 4 != 0 } else { record[15] & 0x80 != 0 });
-        let keep: Vec<bool> =
-            piece.classification().zip(withheld).map(|(class, withheld)| !withheld && !NOISE.contains(&class)).collect();
+        let keep: Vec<bool> = piece
+            .classification()
+            .zip(withheld)
+            .map(|(class, withheld)| !withheld && !NOISE.contains(&class))
+            .collect();
         self.cloud.noise += keep.iter().filter(|keep| !**keep).count();
         let places = piece.x().zip(piece.y()).zip(piece.z()).map(|((x, y), z)| [x, y, z]);
         self.cloud.positions.extend(kept(places, &keep));
@@ -222,7 +224,8 @@ const UNITS: [(u16, &str, f64); 3] =
     [(9001, "metre", 1.0), (9002, "foot", 0.3048), (9003, "US survey foot", 1200.0 / 3937.0)];
 
 fn crs(header: &las::Header) -> Option<LasCrs> {
-    let wkt = header.get_wkt_crs_bytes().map(|bytes| String::from_utf8_lossy(bytes).trim_matches(['\0', ' ']).to_owned());
+    let wkt =
+        header.get_wkt_crs_bytes().map(|bytes| String::from_utf8_lossy(bytes).trim_matches(['\0', ' ']).to_owned());
     if let Some(text) = wkt.filter(|text| !text.is_empty()) {
         return Some(LasCrs { understood: wkt_crs(&text), text });
     }

@@ -71,7 +71,8 @@ fn fixed_calibration(head: &[u8]) -> Result<Option<[f64; 4]>, Fault> {
         (b"NVM_V3", b"FixedK") => words.numbers("the calibration fx cx fy cy after FixedK").map(Some),
         (first, second) => {
             let got = String::from_utf8_lossy(&[first, b" ", second].concat()).into_owned();
-            let expected = "a first line `NVM_V3`, or with `FixedK` and the calibration (VisualSFM's own poses as quaternions)";
+            let expected =
+                "a first line `NVM_V3`, or with `FixedK` and the calibration (VisualSFM's own poses as quaternions)";
             Err(Fault::new("line 1", expected, format!("`{}`", super::escaped(got.trim()))))
         }
     }
@@ -110,9 +111,9 @@ fn further_models(tokens: &mut Tokens) -> usize {
             break;
         }
         let is_whole = (0..cameras).all(|_| camera(tokens).is_ok())
-            && tokens.counted("points", POINT_BYTES).is_ok_and(|points| {
-                (0..points).all(|_| point(tokens, cameras).is_ok())
-            });
+            && tokens
+                .counted("points", POINT_BYTES)
+                .is_ok_and(|points| (0..points).all(|_| point(tokens, cameras).is_ok()));
         found += 1;
         if !is_whole {
             break;
@@ -140,7 +141,8 @@ mod tests {
     #[test]
     fn a_calibration_that_was_given_and_further_models_are_told() {
         let second = FILE.replace("NVM_V3 \n\n", "");
-        let model = parse(format!("{}{second}0\n#comment", FILE.replace("V3 ", "V3 FixedK 500 320 501 240")).as_bytes());
+        let model =
+            parse(format!("{}{second}0\n#comment", FILE.replace("V3 ", "V3 FixedK 500 320 501 240")).as_bytes());
         let model = model.unwrap();
         assert_eq!((model.further_models, model.fixed_calibration), (1, Some([500.0, 320.0, 501.0, 240.0])));
     }

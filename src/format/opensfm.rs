@@ -110,7 +110,9 @@ fn tracks(bytes: &[u8], wanted: impl Fn(&str, &str) -> bool) -> Result<Vec<OpenS
         }
         let fields: Vec<&str> = text.split('\t').collect();
         let observation = match fields.as_slice() {
-            [shot, track, _feature, x, y, ..] => x.parse().ok().zip(y.parse().ok()).map(|(x, y)| (*shot, *track, [x, y])),
+            [shot, track, _feature, x, y, ..] => {
+                x.parse().ok().zip(y.parse().ok()).map(|(x, y)| (*shot, *track, [x, y]))
+            }
             _ => None,
         };
         let Some((shot, track, place)) = observation else {

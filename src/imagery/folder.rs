@@ -140,6 +140,9 @@ mod tests {
     fn two_files_that_may_be_meant_are_an_error_that_names_both() {
         let folder = folder(&["left/b.jpg", "right/b.jpg"]);
         let error = find_pictures(&SuperpixelSource::Photos(folder.path().into()), &["b.jpg"]).unwrap_err().to_string();
-        assert!(error.contains("left/b.jpg") && error.contains("right/b.jpg") && error.contains("photograph"), "{error}");
+        assert!(
+            error.contains("left/b.jpg") && error.contains("right/b.jpg") && error.contains("photograph"),
+            "{error}"
+        );
     }
 }

@@ -53,7 +53,10 @@ pub enum ImageryError {
     NothingFound { noun: &'static str, images: usize, example: String, folder: PathBuf },
     #[error(
         "the {noun} of {} may be {} or {}; give it the path of the image, or take one away: {}",
-        escaped(name), escaped(first), escaped(second), shown(folder)
+        escaped(name),
+        escaped(first),
+        escaped(second),
+        shown(folder)
     )]
     Ambiguous { noun: &'static str, name: String, first: String, second: String, folder: PathBuf },
     #[error("cannot read {noun} ({reason}): {}", shown(path))]

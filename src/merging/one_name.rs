@@ -21,10 +21,8 @@ pub fn unify_names(parts: &mut [Part]) -> Result<Vec<String>, MergeError> {
         let matched = {
             let names: Vec<&str> = part.sfm.images.iter().map(|image| image.name.as_str()).collect();
             let before: Vec<&str> = known.iter().map(String::as_str).collect();
-            match_names(&names, &before).map_err(|ambiguous: AmbiguousName| MergeError::AmbiguousName {
-                part: part.name.clone(),
-                ambiguous,
-            })?
+            match_names(&names, &before)
+                .map_err(|ambiguous: AmbiguousName| MergeError::AmbiguousName { part: part.name.clone(), ambiguous })?
         };
         let (mut renamed, mut alike) = (Vec::new(), Vec::new());
         for (image, matched) in part.sfm.images.iter_mut().zip(matched) {
@@ -40,7 +38,11 @@ pub fn unify_names(parts: &mut [Part]) -> Result<Vec<String>, MergeError> {
                 }
             }
         }
-        warnings.extend(told(&part.name, &renamed, "are those of the parts before by the ending of the path or the stem"));
+        warnings.extend(told(
+            &part.name,
+            &renamed,
+            "are those of the parts before by the ending of the path or the stem",
+        ));
         let alike_words = "have the base names of others in folders of another name, and are not taken for the same; name the \
                            folders alike if they are";
         warnings.extend(told(&part.name, &alike, alike_words));

@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use super::{
-    CloudCrs, LasPacking, Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind,
-};
+use super::{CloudCrs, LasPacking, Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind};
 use crate::format::e57::E57Cloud;
 use crate::format::las::{LasCloud, LasCrs};
 use crate::format::wkt::WktUnit;
@@ -41,7 +39,11 @@ pub(super) fn of_e57(path: &Path, cloud: E57Cloud) -> Result<Reconstruction, Rec
     let mut warnings = Vec::new();
     if cloud.invalid > 0 {
         let example = format!("in {}", file_name(path));
-        warnings.push(ReconstructionWarning { kind: WarningKind::PointsWithoutPosition, count: cloud.invalid, example });
+        warnings.push(ReconstructionWarning {
+            kind: WarningKind::PointsWithoutPosition,
+            count: cloud.invalid,
+            example,
+        });
     }
     if !cloud.not_carried.is_empty() {
         let (kind, count) = (WarningKind::FieldsDropped, cloud.not_carried.len());
@@ -85,8 +87,9 @@ const SAME_UNIT: f64 = 1e-4;
 fn unit_warning(unit: Option<&WktUnit>) -> Option<ReconstructionWarning> {
     let WktUnit { name, metres } = unit.filter(|unit| (unit.metres - 1.0).abs() > SAME_UNIT)?;
     let plural = name.to_lowercase().replace("foot", "feet");
-    let example =
-        format!("the coordinates are in {plural} (unit `{name}`), not metres: the scale that fits is about {metres:.4}");
+    let example = format!(
+        "the coordinates are in {plural} (unit `{name}`), not metres: the scale that fits is about {metres:.4}"
+    );
     Some(ReconstructionWarning { kind: WarningKind::UnitNotMetres, count: 1, example })
 }
 
@@ -102,8 +105,10 @@ fn bring_heights(
         return None;
     }
     positions.iter_mut().for_each(|place| place[2] *= factor);
-    let example =
-        format!("heights in `{}` were multiplied by {factor:.4}, to be in `{}` as the plan is", heights.name, plan.name);
+    let example = format!(
+        "heights in `{}` were multiplied by {factor:.4}, to be in `{}` as the plan is",
+        heights.name, plan.name
+    );
     Some(ReconstructionWarning { kind: WarningKind::HeightsBrought, count: 1, example })
 }
 

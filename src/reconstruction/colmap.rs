@@ -36,7 +36,7 @@ pub(super) fn reconstruction(folder: &Path, model: Model) -> Result<Reconstructi
     check.warn(WarningKind::NoImages, usize::from(images.is_empty()), || folder.display().to_string());
     let tracks = tracks(&mut check, &points, &image_index, &images, links);
     if !images.is_empty() {
-        warn_of_lonely_points(&mut check, &points);
+        warn_of_lonely_points(&mut check, &points.ids, &tracks.starts);
     }
     let PointRecords { ids, positions, colors, errors, .. } = points;
     Ok(Reconstruction {
@@ -178,10 +178,10 @@ fn image(
     Ok(image)
 }
 
-fn warn_of_lonely_points(check: &mut Checker, points: &PointRecords) {
+fn warn_of_lonely_points(check: &mut Checker, ids: &[u64], track_starts: &[u32]) {
     let is_alone = |ends: &&[u32]| ends[0] == ends[1];
-    if let Some(first) = points.track_starts.windows(2).position(|ends| is_alone(&ends)) {
-        let count = points.track_starts.windows(2).filter(is_alone).count();
-        check.warn(WarningKind::PointsWithoutTrack, count, || format!("point {}", points.ids[first]));
+    if let Some(first) = track_starts.windows(2).position(|ends| is_alone(&ends)) {
+        let count = track_starts.windows(2).filter(is_alone).count();
+        check.warn(WarningKind::PointsWithoutTrack, count, || format!("point {}", ids[first]));
     }
 }

@@ -63,7 +63,10 @@ pub(super) fn posed_images(
                 None => {
                     let PoseRecord { quaternion_wxyz, translation } = image.cam_from_world;
                     check.warn(WarningKind::ImagesWithoutPose, 1, || {
-                        format!("image {} with quaternion {quaternion_wxyz:?} and translation {translation:?}", image.id)
+                        format!(
+                            "image {} with quaternion {quaternion_wxyz:?} and translation {translation:?}",
+                            image.id
+                        )
                     });
                     continue;
                 }

@@ -68,7 +68,9 @@ impl std::fmt::Display for PoseReading {
             PoseReading::AsGiven => "the poses are world-to-camera",
             PoseReading::Inverted => "the poses look inverted: they are camera-to-world",
             PoseReading::OpenGl => "the cameras have the axes of OpenGL: y up and z back",
-            PoseReading::InvertedOpenGl => "the poses look inverted: camera-to-world with the axes of OpenGL, y up and z back",
+            PoseReading::InvertedOpenGl => {
+                "the poses look inverted: camera-to-world with the axes of OpenGL, y up and z back"
+            }
         })
     }
 }
@@ -165,7 +167,8 @@ fn told(r: &Reconstruction, sample: &[(PointIndex, ImageIndex, u32)], figures: F
 }
 
 fn names_twice(r: &Reconstruction) -> Option<ReconstructionWarning> {
-    let mut names: Vec<&str> = r.images.iter().map(|image| image.name.as_str()).filter(|name| !name.is_empty()).collect();
+    let mut names: Vec<&str> =
+        r.images.iter().map(|image| image.name.as_str()).filter(|name| !name.is_empty()).collect();
     names.sort_unstable();
     let mut twice = names.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]);
     let first = twice.next()?.to_string();

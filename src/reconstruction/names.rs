@@ -27,7 +27,9 @@ pub enum NameMatch {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the image {} may be {} or {}; give both the same path, or take one away",
-    crate::format::escaped(name), crate::format::escaped(first), crate::format::escaped(second)
+    crate::format::escaped(name),
+    crate::format::escaped(first),
+    crate::format::escaped(second)
 )]
 pub struct AmbiguousName {
     pub name: String,
@@ -139,7 +141,12 @@ impl<'a> Index<'a> {
     }
 
     /// The one with the longest common ending.
-    fn best(&self, name: &str, sought: &Parts, candidates: Option<&Vec<usize>>) -> Result<Option<usize>, AmbiguousName> {
+    fn best(
+        &self,
+        name: &str,
+        sought: &Parts,
+        candidates: Option<&Vec<usize>>,
+    ) -> Result<Option<usize>, AmbiguousName> {
         let Some(candidates) = candidates else { return Ok(None) };
         let rank = |i: usize| (self.parts[i].common(sought), self.parts[i].is_ending(sought));
         let Some(highest) = candidates.iter().map(|i| rank(*i)).max() else { return Ok(None) };

@@ -24,14 +24,23 @@ pub(super) fn reconstruction(path: &Path, model: &NerfstudioModel) -> Result<Rec
     };
     let sfm_from_file = sfm_from_file(model).ok_or_else(|| {
         let got = format!("{:?}, applied_scale {:?}", model.applied_transform, model.applied_scale);
-        odd("applied_transform".into(), "a rotation and a translation, in three rows or four, and a scale above zero", got)
+        odd(
+            "applied_transform".into(),
+            "a rotation and a translation, in three rows or four, and a scale above zero",
+            got,
+        )
     })?;
     let mut posed = Posed::default();
     let mut warnings = Vec::new();
     for frame in &model.frames {
         let object = || format!("frame {}", crate::format::escaped(&frame.file_path));
-        let (rotation, center) = camera_to_world(&frame.transform_matrix)
-            .ok_or_else(|| odd(object(), "a rotation and a finite place in its transform_matrix", format!("{:?}", frame.transform_matrix)))?;
+        let (rotation, center) = camera_to_world(&frame.transform_matrix).ok_or_else(|| {
+            odd(
+                object(),
+                "a rotation and a finite place in its transform_matrix",
+                format!("{:?}", frame.transform_matrix),
+            )
+        })?;
         let told = frame.own.or(&model.shared);
         let name = frame.file_path.strip_prefix("./").unwrap_or(&frame.file_path).to_owned();
         let camera = camera(&told, || picture_size(&folder.join(&name)));

@@ -77,7 +77,8 @@ fn points(
 /// The cameras by their key; the class of one that is not known.
 fn cameras(model: &OpenMvgModel) -> HashMap<u32, Result<Camera, String>> {
     let classes = model.intrinsic_classes();
-    let camera_of = |intrinsic: &OpenMvgIntrinsic, class: &str| camera(intrinsic, class).ok_or_else(|| class.to_owned());
+    let camera_of =
+        |intrinsic: &OpenMvgIntrinsic, class: &str| camera(intrinsic, class).ok_or_else(|| class.to_owned());
     model.intrinsics.iter().zip(classes).map(|(i, class)| (i.key, camera_of(i.value.data(), class))).collect()
 }
 
@@ -94,9 +95,7 @@ fn camera(intrinsic: &OpenMvgIntrinsic, class: &str) -> Option<Camera> {
             _ => return None,
         },
         "pinhole_radial_k3" => match coefficients(&intrinsic.disto_k3).as_slice() {
-            [k1, k2, k3] => {
-                (CameraModel::FullOpencv, vec![f, f, cx, cy, *k1, *k2, 0.0, 0.0, *k3, 0.0, 0.0, 0.0])
-            }
+            [k1, k2, k3] => (CameraModel::FullOpencv, vec![f, f, cx, cy, *k1, *k2, 0.0, 0.0, *k3, 0.0, 0.0, 0.0]),
             _ => return None,
         },
         "pinhole_brown_t2" => match coefficients(&intrinsic.disto_t2).as_slice() {

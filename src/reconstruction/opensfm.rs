@@ -5,9 +5,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::posed::{Posed, PosedImage, PosedPoint, color, usable, warn};
-use super::{
-    KnownPositions, Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind,
-};
+use super::{KnownPositions, Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind};
 use crate::format::opensfm::{OpenSfmCamera, OpenSfmObservation, OpenSfmPiece, read_opensfm, read_opensfm_tracks};
 use crate::format::sfm_file::SfmFileError;
 use crate::geometry::{Camera, CameraModel, Rotation3, Vector3};

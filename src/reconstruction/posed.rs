@@ -1,7 +1,8 @@
 //! Cameras, photographs and points of formats that number them from zero, as one reconstruction.
 
 use super::{
-    CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, ReconstructionWarning, SfmFormat, WarningKind,
+    CameraIndex, Image, ImageIndex, Observation, PointIndex, Reconstruction, ReconstructionWarning, SfmFormat,
+    WarningKind,
 };
 use crate::geometry::{Camera, Point3, Rotation3, Vector3};
 

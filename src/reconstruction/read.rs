@@ -90,7 +90,8 @@ fn add_cloud(model: &mut Reconstruction, path: &Path) -> Result<(), Reconstructi
     let cloud = ply::reconstruction(path, read_ply(path)?)?;
     let count = cloud.points.len();
     model.point_ids = (1..=count as u64).collect();
-    (model.points, model.colors, model.normals, model.fields) = (cloud.points, cloud.colors, cloud.normals, cloud.fields);
+    (model.points, model.colors, model.normals, model.fields) =
+        (cloud.points, cloud.colors, cloud.normals, cloud.fields);
     (model.track_starts, model.track_elements, model.point_errors_px) = (Vec::new(), Vec::new(), Vec::new());
     // Keypoints cannot name points of a file without ids.
     model.images.iter_mut().flat_map(|image| &mut image.observations).for_each(|o| o.point = None);

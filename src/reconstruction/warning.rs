@@ -77,7 +77,9 @@ impl WarningKind {
     fn text(self) -> &'static str {
         match self {
             WarningKind::ObservationsOfMissingPoints => "keypoints of points that the model does not hold, ignored",
-            WarningKind::TracksThatImagesContradict => "links between keypoints and points that only images or only tracks tell, left out",
+            WarningKind::TracksThatImagesContradict => {
+                "links between keypoints and points that only images or only tracks tell, left out"
+            }
             WarningKind::TracksOfMissingImages => "track elements of images that are not in the model, left out",
             WarningKind::PointsWithoutTrack => "points without a track",
             WarningKind::NoImages => "model without images, taken as a cloud: no sfm folder is written",
@@ -86,7 +88,9 @@ impl WarningKind {
             WarningKind::PosesThatFramesContradict => "image poses that differ from their frames', the frames' taken",
             WarningKind::UnnormalizedQuaternions => "quaternions not of unit length, normalised",
             WarningKind::NamesNotUtf8 => "names that are not UTF-8, read as Latin-1",
-            WarningKind::NamesTwice => "images that bear the name of another one, so that photographs and labels are theirs alike",
+            WarningKind::NamesTwice => {
+                "images that bear the name of another one, so that photographs and labels are theirs alike"
+            }
             WarningKind::PointsWithoutPosition => "points without a finite position, left out",
             WarningKind::ErrorsNotFinite => "reprojection errors that are no numbers, taken as unknown",
             WarningKind::NormalsWithoutDirection => "normals without a direction",
@@ -100,8 +104,12 @@ impl WarningKind {
                 "observations that were looked at contradict their cameras, so that no lines of sight are used"
             }
             WarningKind::FieldsDropped => "further properties of points that are not carried into the output",
-            WarningKind::SplatFieldsDropped => "properties of Gaussian splats that are not carried over: the result is a bare cloud; apply the transform of alignment.json in a splat editor",
-            WarningKind::OddRowsPassedOver => "rows of other elements than vertices that are not as the header says, passed over",
+            WarningKind::SplatFieldsDropped => {
+                "properties of Gaussian splats that are not carried over: the result is a bare cloud; apply the transform of alignment.json in a splat editor"
+            }
+            WarningKind::OddRowsPassedOver => {
+                "rows of other elements than vertices that are not as the header says, passed over"
+            }
             WarningKind::NoiseLeftOut => "points classified as noise (7, 18) or withheld, left out",
             WarningKind::UnitNotMetres => "unit other than metres",
             WarningKind::HeightsBrought => "unit of heights other than that of the plan",

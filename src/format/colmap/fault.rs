@@ -6,7 +6,12 @@ pub(super) enum Fault {
     Unreadable(std::io::Error),
     /// Text of 16 bits a character.
     Utf16,
-    Malformed { at: u64, object: String, expected: String, got: String },
+    Malformed {
+        at: u64,
+        object: String,
+        expected: String,
+        got: String,
+    },
 }
 
 impl Fault {

@@ -38,7 +38,8 @@ pub enum Remedy {
 impl Remedy {
     /// By what COLMAP puts before the records of a text file. A binary file says nothing of who wrote it.
     fn of(text: &[u8]) -> Remedy {
-        let starts = ["# Camera list with", "# Image list with", "# 3D point list with", "# Rig calib", "# Frame list with"];
+        let starts =
+            ["# Camera list with", "# Image list with", "# 3D point list with", "# Rig calib", "# Frame list with"];
         match starts.iter().any(|start| text.starts_with(start.as_bytes())) {
             true => Remedy::ExportAgain,
             false => Remedy::WriteAgain,
@@ -182,12 +183,7 @@ fn read_file<T>(
 }
 
 /// Text is read whole, into `bytes`.
-fn parse<T>(
-    path: &Path,
-    bytes: &mut Vec<u8>,
-    binary: BinaryParser<T>,
-    text: TextParser<T>,
-) -> Result<Read<T>, Fault> {
+fn parse<T>(path: &Path, bytes: &mut Vec<u8>, binary: BinaryParser<T>, text: TextParser<T>) -> Result<Read<T>, Fault> {
     let file = open_regular(path).map_err(Fault::Unreadable)?;
     let length = file.metadata().map_err(Fault::Unreadable)?.len();
     let mut reader = BufReader::with_capacity(READ_BYTES, file);

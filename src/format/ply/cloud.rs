@@ -52,9 +52,8 @@ pub(super) struct Collector {
 
 impl Collector {
     pub fn new(vertex: &Element) -> Collector {
-        let is_scalar = |name: &str| {
-            vertex.properties.iter().any(|p| p.name == name && matches!(p.kind, PropertyKind::Scalar(_)))
-        };
+        let is_scalar =
+            |name: &str| vertex.properties.iter().any(|p| p.name == name && matches!(p.kind, PropertyKind::Scalar(_)));
         let colors = COLOR_NAMES.iter().find(|names| names.iter().all(|name| is_scalar(name)));
         let normals = Some(NORMAL_NAMES).filter(|names| names.iter().all(|name| is_scalar(name)));
         let mut cloud = PlyCloud::default();

@@ -9,7 +9,9 @@ fn read(text: &str) -> PlyCloud {
 
 fn header(encoding: &str, properties: &[&str]) -> String {
     let properties: String = properties.iter().map(|p| format!("property {p}\n")).collect();
-    format!("ply\nformat {encoding} 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n{properties}")
+    format!(
+        "ply\nformat {encoding} 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n{properties}"
+    )
 }
 
 #[test]
@@ -39,7 +41,9 @@ fn one_colour_alone_is_a_further_property() {
 
 #[test]
 fn colours_are_scaled_by_their_type() {
-    for (kind, value, expected) in [("float", "1.0", 255), ("ushort", "65535", 255), ("uchar", "7", 7), ("float", "nan", 0)] {
+    for (kind, value, expected) in
+        [("float", "1.0", 255), ("ushort", "65535", 255), ("uchar", "7", 7), ("float", "nan", 0)]
+    {
         let properties = ["red", "green", "blue"].map(|name| format!("{kind} {name}"));
         let properties: Vec<&str> = properties.iter().map(String::as_str).collect();
         let row = format!("1 2 3 {value} {value} {value}\n");

@@ -8,12 +8,8 @@ const VIEW: PoseReading = PoseReading::AsGiven;
 
 /// Four cameras about a block of points, each of which sees all of them where it should; poses written as `reading`.
 fn capture(reading: PoseReading) -> Reconstruction {
-    let camera = Camera {
-        model: CameraModel::Pinhole,
-        width_px: 800,
-        height_px: 600,
-        params: vec![500.0, 500.0, 400.0, 300.0],
-    };
+    let camera =
+        Camera { model: CameraModel::Pinhole, width_px: 800, height_px: 600, params: vec![500.0, 500.0, 400.0, 300.0] };
     let points: Vec<_> = (0..60)
         .map(|i| Point3::new(f64::from(i % 5) - 2.0, f64::from(i / 5 % 4) - 1.5, 0.7 * f64::from(i / 20)))
         .collect();

@@ -21,13 +21,12 @@ pub(super) fn reconstruction(path: &Path, model: &NvmModel) -> Result<Reconstruc
     let mut warnings = Vec::new();
     let rotations = rotations(path, model)?;
     let offsets = offsets(model, &rotations);
-    let reach =
-        model
-            .points
-            .iter()
-            .flat_map(|p| &p.measurements)
-            .flat_map(|(_, place)| place)
-            .fold(0.0, |reach: f64, v| if v.is_finite() { reach.max(v.abs()) } else { reach });
+    let reach = model
+        .points
+        .iter()
+        .flat_map(|p| &p.measurements)
+        .flat_map(|(_, place)| place)
+        .fold(0.0, |reach: f64, v| if v.is_finite() { reach.max(v.abs()) } else { reach });
     let all: Vec<[f64; 2]> = offsets.iter().flatten().copied().collect();
     let offset = middle(&all).unwrap_or_default();
     let from_corner = offset[0].hypot(offset[1]) > MIDDLE_SHARE * reach;

@@ -117,9 +117,10 @@ fn check_count(header: &las::Header, length: u64) -> Result<(), String> {
         return Err(format!("it says {count} points, of which at most {most} fit into the file's {length} bytes"));
     }
     let transforms = header.transforms();
-    let numbers = [transforms.x, transforms.y, transforms.z].map(|t| [t.scale, t.offset]);
-    if !numbers.iter().flatten().all(|v| v.is_finite()) {
-        return Err("a scale or an offset is not a finite number".into());
+    // Coordinates are whole numbers of 32 bits, scaled and shifted.
+    let farthest = |t: las::Transform| t.scale.abs() * f64::from(u32::MAX) + t.offset.abs();
+    if ![transforms.x, transforms.y, transforms.z].into_iter().map(farthest).all(f64::is_finite) {
+        return Err("a scale or an offset is not a finite number, or beyond all numbers".into());
     }
     Ok(())
 }

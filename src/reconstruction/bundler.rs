@@ -128,6 +128,3 @@ fn camera(record: &BundlerCamera, (width_px, height_px): (u64, u64)) -> Option<C
     let params = vec![record.focal_px, 0.5 * width_px as f64, 0.5 * height_px as f64, k1, k2];
     usable(Camera { model: CameraModel::Radial, width_px, height_px, params })
 }
-
-#[cfg(test)]
-mod tests;

@@ -133,6 +133,3 @@ fn camera(model: &NvmModel, record: &NvmCamera, (width_px, height_px): (u64, u64
     };
     usable(Camera { model, width_px, height_px, params })
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,21 +1,18 @@
 //! Reconstructions in the forms that people have them: LAS, E57, OpenSfM, nerfstudio, OpenMVG, Bundler, NVM.
 
+mod needs;
+
 use std::path::{Path, PathBuf};
 
 use cityweld::types::{PointIndex, SfmFormat, WarningKind};
 use cityweld::{Point3, Reconstruction, Rotation3, Vector3, read_reconstruction, write_colmap, write_ply};
 use nalgebra::UnitQuaternion;
+use needs::shared;
 use serde_json::{Value, json};
-
-/// Real files with the answers of a right reader, where they are there.
-fn shared() -> Option<PathBuf> {
-    let folder = PathBuf::from("/work/shared/data/formats");
-    folder.join("expected.json").is_file().then_some(folder)
-}
 
 #[test]
 fn shared_files_give_the_numbers_that_were_counted_independently() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = shared("data/formats") else { return };
     let expected: Value = serde_json::from_slice(&std::fs::read(folder.join("expected.json")).unwrap()).unwrap();
     let mut failures = Vec::new();
     for (name, expected) in expected.as_object().unwrap() {
@@ -366,7 +363,7 @@ fn bundler_is_read_with_y_up_and_z_back() {
 
 #[test]
 fn shared_files_are_read_in_their_conventions() {
-    let Some(folder) = shared() else { return };
+    let Some(folder) = shared("data/formats") else { return };
     let read = |name: &str| read_reconstruction(&folder.join("sfm").join(name)).unwrap();
     // Figures of data/formats/README.md, found independently.
     let median = reprojection(&read("openmvg_sfm_data.json"))[0];

@@ -80,6 +80,7 @@ pub(super) fn check(path: &Path, r: &mut Reconstruction) -> Result<(), Reconstru
     r.warnings.extend(names_twice(r));
     let sample = sample(r);
     if sample.len() < FEWEST_OBSERVATIONS {
+        r.warnings.extend(blind_cameras(r));
         return Ok(());
     }
     let given = figures(r, &sample, PoseReading::AsGiven);
@@ -155,6 +156,39 @@ fn in_cam(image: &Image, point: &Point3<f64>, reading: PoseReading) -> Point3<f6
             Point3::from(x.coords.component_mul(&Vector3::new(1.0, -1.0, -1.0)))
         }
     }
+}
+
+/// Cameras and points that are looked at where no tracks are, at most, and points below which nothing is said. Chosen.
+const MOST_CAMERAS: usize = 100;
+const MOST_POINTS: usize = 500;
+const FEWEST_POINTS: usize = 50;
+
+/// Without tracks a picture in which no point lies is all that tells of poses written the wrong way round. It is told where half of the
+/// pictures are empty as the poses are given; a way to read them that leaves hardly any empty is named.
+fn blind_cameras(r: &Reconstruction) -> Option<ReconstructionWarning> {
+    if r.images.is_empty() || r.points.len() < FEWEST_POINTS {
+        return None;
+    }
+    let cameras: Vec<usize> = (0..r.images.len()).step_by(r.images.len().div_ceil(MOST_CAMERAS)).collect();
+    let blind = |reading| cameras.iter().filter(|image| !sees_any(r, **image, reading)).count();
+    let given = blind(PoseReading::AsGiven);
+    if 2 * given < cameras.len() {
+        return None;
+    }
+    let others = [PoseReading::Inverted, PoseReading::OpenGl, PoseReading::InvertedOpenGl];
+    let better = others.into_iter().find(|reading| 10 * blind(*reading) <= cameras.len());
+    let reading = better.map(|reading| format!(": {reading}")).unwrap_or_default();
+    let example = format!("of {} that were looked at{reading}", cameras.len());
+    Some(ReconstructionWarning { kind: WarningKind::BlindCameras, count: given, example })
+}
+
+fn sees_any(r: &Reconstruction, image: usize, reading: PoseReading) -> bool {
+    let camera = r.camera_of(ImageIndex(image as u32));
+    let (width, height) = (camera.width_px as f64, camera.height_px as f64);
+    let is_inside = |[x, y]: [f64; 2]| (0.0..width).contains(&x) && (0.0..height).contains(&y);
+    let step = r.points.len().div_ceil(MOST_POINTS).max(1);
+    let mut points = r.points.iter().step_by(step);
+    points.any(|point| camera.project(&in_cam(&r.images[image], point, reading)).is_some_and(is_inside))
 }
 
 /// The figures as a person says them, in pixels of the first camera of the sample.

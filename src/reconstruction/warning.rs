@@ -50,6 +50,8 @@ pub enum WarningKind {
     PointsFromPly,
     /// Points do not lie where keypoints and poses say, but most nearly do.
     LooseFit,
+    /// Cameras in whose picture no point lies, in a reconstruction without tracks.
+    BlindCameras,
     /// Points, poses and keypoints contradict each other: nothing is concluded from who saw what.
     SightDenied,
     /// Further properties of points that are not carried into the output.
@@ -100,6 +102,7 @@ impl WarningKind {
             WarningKind::NoPoints => "reconstruction without points",
             WarningKind::PointsFromPly => "points taken from a PLY file beside cameras and images, without tracks",
             WarningKind::LooseFit => "observations that were looked at fit their cameras loosely",
+            WarningKind::BlindCameras => "cameras have no point in their picture",
             WarningKind::SightDenied => {
                 "observations that were looked at contradict their cameras, so that no lines of sight are used"
             }
@@ -126,6 +129,7 @@ impl std::fmt::Display for ReconstructionWarning {
         match kind {
             WarningKind::UnitNotMetres | WarningKind::HeightsBrought => write!(f, "{example}"),
             WarningKind::LooseFit | WarningKind::SightDenied => write!(f, "{count} {}: {example}", kind.text()),
+            WarningKind::BlindCameras => write!(f, "{count} {}, {example}", kind.text()),
             WarningKind::FieldsDropped | WarningKind::SplatFieldsDropped => {
                 write!(f, "{count} {} ({example})", kind.text())
             }

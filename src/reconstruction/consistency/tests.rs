@@ -99,3 +99,24 @@ fn names_that_two_images_bear_are_counted() {
     assert_eq!((r.warnings[0].kind, r.warnings[0].count), (WarningKind::NamesTwice, 2));
     assert!(r.warnings[0].to_string().contains("0.jpg"));
 }
+
+/// The capture without its tracks, about one direction alone, so that turned cameras see nothing.
+fn without_tracks(reading: PoseReading) -> Reconstruction {
+    let mut r = capture(reading);
+    (r.track_starts, r.track_elements) = (Vec::new(), Vec::new());
+    r.images.iter_mut().for_each(|image| image.observations.clear());
+    r
+}
+
+#[test]
+fn without_tracks_empty_pictures_tell_of_poses_written_the_wrong_way_round() {
+    for reading in [PoseReading::OpenGl, PoseReading::InvertedOpenGl] {
+        let mut r = without_tracks(reading);
+        check(Path::new("sfm"), &mut r).unwrap();
+        assert_eq!((r.warnings.len(), r.warnings[0].kind), (1, WarningKind::BlindCameras), "{reading:?}");
+        assert!(r.warnings[0].to_string().contains("OpenGL"), "{}", r.warnings[0]);
+    }
+    let mut r = without_tracks(PoseReading::AsGiven);
+    check(Path::new("sfm"), &mut r).unwrap();
+    assert!(r.warnings.is_empty());
+}

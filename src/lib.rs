@@ -95,6 +95,7 @@ pub mod types {
     pub use crate::export::{ExportError, OutputError, ReportError};
     pub use crate::format::PlacementError;
     pub use crate::format::cityjson::{CityJsonError, CityJsonProblem};
+    pub use crate::format::ply::{CloudField, FieldKind};
     pub use crate::geometry::{Camera, CameraModel, StartError};
     pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};
     pub use crate::merging::{
@@ -103,7 +104,8 @@ pub mod types {
     };
     pub use crate::planes::CityPlanes;
     pub use crate::reconstruction::{
-        CameraIndex, ColmapParts, ImageIndex, PointIndex, ReconstructionError, ReconstructionWarning, WarningKind,
+        CameraIndex, CloudCrs, ColmapParts, ImageIndex, KnownPositions, LasPacking, PointIndex, PoseReading,
+        ReconstructionError, ReconstructionWarning, SfmFormat, SfmSource, Sight, WarningKind, recognise,
     };
     pub use crate::robust::{Matrix7, MotionParameters};
     pub use crate::verdict::{FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary, Support};

@@ -18,7 +18,7 @@ use crate::imagery::{
     lift_superpixels_of,
 };
 use crate::limits::Limits;
-use crate::merging::{Anchor, JoinOptions, Merge, MergeError, Part, join};
+use crate::merging::{Anchor, JoinOptions, Merge, MergeError, Part, join, unify_names};
 use crate::observer::Observer;
 use crate::planes::PreparedCity;
 use crate::reconstruction::{Image, Reconstruction};
@@ -52,6 +52,7 @@ pub fn merge(
         .into_iter()
         .map(|MergePart { name, sfm, start }| (Part { name, sfm, superpixels: None, anchor: None }, start))
         .unzip();
+    let by_name = unify_names(&mut parts)?;
     let nothing_there = match &options.superpixels {
         Some(source) => lift_shared(&mut parts, source, options, observer)?,
         None => None,
@@ -62,7 +63,7 @@ pub fn merge(
         }
     }
     let mut merged = join(&parts, &options.join, observer)?;
-    merged.warnings.extend(nothing_there);
+    merged.warnings.extend(by_name.into_iter().chain(nothing_there));
     Ok(merged)
 }
 

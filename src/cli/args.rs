@@ -100,7 +100,7 @@ pub struct Common {
 pub struct AlignArgs {
     /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
     pub city: PathBuf,
-    /// Reconstruction: a folder with a COLMAP model (binary or text), or a PLY cloud
+    /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
     pub sfm: PathBuf,
     /// Folder to make; must not exist (see --force)
     #[arg(short, long, value_name = "OUT")]
@@ -144,7 +144,7 @@ pub struct AlignArgs {
     cityweld merge part_a part_b --city city.obj --start a.json --start b.json -o out\n\n\
     Exit status: 0 all parts are merged; 1 any other verdict (merge.json says why).")]
 pub struct MergeArgs {
-    /// Partial reconstructions: folders with COLMAP models (binary or text), or PLY clouds; at least two
+    /// Partial reconstructions, at least two: COLMAP folders, clouds, or what other tools wrote
     #[arg(value_name = "PART", num_args = 2.., required = true)]
     pub parts: Vec<PathBuf>,
     /// Folder to make; must not exist (see --force)
@@ -191,7 +191,7 @@ pub struct PlanesArgs {
 pub struct ExportArgs {
     /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
     pub city: PathBuf,
-    /// Reconstruction: a folder with a COLMAP model (binary or text), or a PLY cloud
+    /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
     pub sfm: PathBuf,
     /// alignment.json whose transform (or else best_candidate) is used
     #[arg(long, value_name = "FILE")]

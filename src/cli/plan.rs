@@ -88,10 +88,11 @@ pub fn existing_sfm(sfm: &Path, city: &Path) -> Result<()> {
 /// A folder or a file, whatever is in it; a pipe might never end.
 pub fn existing_reconstruction(path: &Path, what: &str) -> Result<()> {
     let place = path.display();
-    let found = std::fs::metadata(path)
-        .with_context(|| format!("cannot read {what}, expected a COLMAP folder or a PLY file: {place}"))?;
+    let found = std::fs::metadata(path).with_context(|| {
+        format!("cannot read {what}, expected a COLMAP folder or a file of a reconstruction: {place}")
+    })?;
     let is_one = found.is_dir() || found.is_file();
-    ensure!(is_one, "{what} is a pipe or a device, expected a COLMAP folder or a PLY file: {place}");
+    ensure!(is_one, "{what} is a pipe or a device, expected a COLMAP folder or a file of a reconstruction: {place}");
     Ok(())
 }
 

@@ -182,6 +182,7 @@ mod tests {
         for given in [
             &[(City, "city.obj"), (Sfm, "sfm"), (Start, "start.json"), (Labels, "labels"), (Photos, "photos")][..],
             &[(City, "city.gltf"), (Sfm, "cloud.ply"), (Photos, "labels"), (Terrain, "city.obj")],
+            &[(City, "city.obj"), (Sfm, "work")],
             &[(City, "notes/a.txt"), (Sfm, "notes"), (Start, "none"), (Labels, "notes"), (Photos, "notes")],
         ] {
             assert_eq!(checked(given), "");
@@ -236,7 +237,6 @@ mod tests {
             (City, "photos", "CITY is a folder of images"),
             (Sfm, "city.obj", "SFM is a city model, expected"),
             (Sfm, "house", "SFM is a city model, expected"),
-            (Sfm, "work", "SFM is a folder without a model of its own, but one lies in work/dense/sparse; give that"),
             (Part, "city.obj", "give a city with --city and a --start for every part: city.obj"),
             (Part, "start.json", "PART is a start"),
             (Start, "sfm", "--start is a COLMAP model, expected"),

@@ -12,7 +12,7 @@ use crate::reconstruction::Reconstruction;
 pub(super) const REMARK: &str = "comment written by cityweld ";
 
 /// Writes the points, in the frame in which they stand: binary little-endian, `double` coordinates, normals (`double`)
-/// and colours (`uchar`) where there are any.
+/// and colours (`uchar`) where there are any, and the further properties that came with them as they came.
 pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), ExportError> {
     if let Some(got) = first_point_not_finite(r) {
         let expected = "finite coordinates; the scale of the move is too large for this reconstruction";
@@ -30,6 +30,8 @@ pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), Exp
         if has_colors {
             declare(out, "uchar", &["red", "green", "blue"])?;
         }
+        let fields: Vec<_> = r.fields.iter().filter(|field| field.len() == count).collect();
+        fields.iter().try_for_each(|field| declare(out, field.kind.name(), &[&field.name]))?;
         out.write_all(b"end_header\n")?;
         for (i, point) in r.points.iter().enumerate() {
             point.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))?;
@@ -39,6 +41,7 @@ pub fn write_ply(path: &Path, r: &Reconstruction) -> std::result::Result<(), Exp
             if has_colors {
                 out.write_all(&r.colors[i])?;
             }
+            fields.iter().try_for_each(|field| out.write_all(field.value_bytes(i)))?;
         }
         Ok(())
     })

@@ -2,19 +2,28 @@
 
 mod alignment;
 pub mod cityjson;
+pub mod bundler;
 pub mod colmap;
+pub mod e57;
 pub mod file;
 mod escape;
 pub mod gltf;
+pub mod las;
+pub mod nerfstudio;
+pub mod nvm;
 mod json_kind;
 pub mod obj;
+pub mod openmvg;
+pub mod opensfm;
+pub mod picture_size;
 mod placement;
 mod problem;
 pub mod ply;
-mod ply_row;
+pub mod sfm_file;
 mod start;
 pub mod surfaces;
 mod text;
+pub mod wkt;
 
 pub use alignment::{StoredAlignment, read_alignment};
 pub use escape::escaped;

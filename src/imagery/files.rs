@@ -1,13 +1,13 @@
-//! Finds the file of an image, and reads and decodes it within bounds.
+//! Reads and decodes pictures within bounds.
 
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
 
 use super::ImageryError;
 use super::size::{most_pixels, size_in_camera};
-use crate::format::file::{is_there, open_regular, read_at_most};
+use crate::format::file::{open_regular, read_at_most};
 
 /// Largest file and largest decoded picture, bytes. 512 MiB hold 170 megapixels of colour, more than any camera has;
 /// what claims more is taken for a damaged or hostile header.
@@ -32,41 +32,6 @@ const BESIDE_A_PIXEL: u64 = 6;
 
 /// As every JPEG begins.
 const JPEG_START: [u8; 3] = [0xFF, 0xD8, 0xFF];
-
-/// Extensions of photographs, in the order in which they are tried after the name itself.
-const PHOTO_EXTENSIONS: [&str; 6] = ["jpg", "JPG", "jpeg", "JPEG", "png", "PNG"];
-const LABEL_EXTENSIONS: [&str; 2] = ["png", "PNG"];
-
-/// The file of a photograph: the image's own name, or the same stem with another extension or case.
-pub(super) fn find_photo(folder: &Path, image_name: &str) -> Option<PathBuf> {
-    let named = path_inside(folder, image_name)?;
-    if is_there(&named) {
-        return Some(named);
-    }
-    with_extension_of(&named, &PHOTO_EXTENSIONS)
-}
-
-/// The file of a label image: the image's name with the extension of a PNG.
-pub(super) fn find_labels(folder: &Path, image_name: &str) -> Option<PathBuf> {
-    with_extension_of(&path_inside(folder, image_name)?, &LABEL_EXTENSIONS)
-}
-
-/// The path of a name under the folder. Names come out of files, so one that leads elsewhere finds nothing.
-/// Reconstructions made on Windows may have backslashes between folders.
-fn path_inside(folder: &Path, image_name: &str) -> Option<PathBuf> {
-    let plain = folder.join(image_name);
-    let name = if image_name.contains('\\') && !is_there(&plain) {
-        image_name.replace('\\', "/")
-    } else {
-        image_name.to_owned()
-    };
-    let stays = Path::new(&name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    (stays && !name.is_empty()).then(|| folder.join(name))
-}
-
-fn with_extension_of(named: &Path, extensions: &[&str]) -> Option<PathBuf> {
-    extensions.iter().map(|extension| named.with_extension(extension)).find(|path| is_there(path))
-}
 
 /// What a file should hold.
 #[derive(Clone, Copy)]
@@ -198,30 +163,6 @@ fn lacks_jpeg_end(bytes: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_that_lead_out_of_the_folder_find_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::create_dir(folder.path().join("in")).unwrap();
-        std::fs::write(folder.path().join("a.png"), b"x").unwrap();
-        assert!(find_photo(folder.path(), "a.png").is_some());
-        assert!(find_photo(&folder.path().join("in"), "../a.png").is_none());
-        let absolute = folder.path().join("a.png");
-        assert!(find_photo(&folder.path().join("in"), absolute.to_str().unwrap()).is_none());
-        assert!(find_photo(folder.path(), "").is_none());
-    }
-
-    #[test]
-    fn other_extensions_and_sub_folders_are_found() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::create_dir(folder.path().join("left")).unwrap();
-        std::fs::write(folder.path().join("left/b.JPEG"), b"x").unwrap();
-        std::fs::write(folder.path().join("left/b.png"), b"x").unwrap();
-        assert_eq!(find_photo(folder.path(), "left/b.jpg"), Some(folder.path().join("left/b.JPEG")));
-        assert_eq!(find_photo(folder.path(), "left\\b.tif"), Some(folder.path().join("left/b.JPEG")));
-        assert_eq!(find_labels(folder.path(), "left/b.jpg"), Some(folder.path().join("left/b.png")));
-        assert_eq!(find_labels(folder.path(), "b.jpg"), None);
-    }
 
     #[test]
     fn the_end_marker_of_a_thumbnail_does_not_count() {

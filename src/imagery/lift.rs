@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::files::{find_labels, find_photo};
+use super::folder::{find_pictures, looked_for};
 use super::labels::{decode_labels, open_labels};
 use super::memory::Budget;
 use super::photos::{decode_photo, open_photo};
@@ -14,7 +14,7 @@ use super::size;
 use super::superpixels::{SuperpixelOptions, cut_superpixels};
 use super::{ImageryError, ImageryWarning, LabelMap, SuperpixelSource};
 use crate::observer::{Observer, Stage, check_cancelled};
-use crate::reconstruction::{Image, ImageIndex, PointIndex, Reconstruction};
+use crate::reconstruction::{Image, ImageIndex, NameMatch, PointIndex, Reconstruction};
 
 /// One superpixel of one image with the points whose observations fall on it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -85,8 +85,11 @@ pub fn lift_superpixels_of(
     })
 }
 
+#[derive(Default)]
 struct Files {
     found: Vec<(ImageIndex, PathBuf)>,
+    /// Those of `found` that have another path than their image's name.
+    elsewhere: Vec<(usize, NameMatch)>,
     missing: Vec<ImageIndex>,
 }
 
@@ -99,19 +102,23 @@ fn find_files(
     if let Err(error) = std::fs::read_dir(folder) {
         return Err(ImageryError::Folder { noun, folder: folder.to_path_buf(), reason: error.to_string() });
     }
-    let mut files = Files { found: Vec::new(), missing: Vec::new() };
-    for (index, image) in reconstruction.images.iter().enumerate() {
-        if !wanted(image) || !image.observations.iter().any(|observation| observation.point.is_some()) {
-            continue;
-        }
-        let index = ImageIndex(index as u32);
-        let found = match source {
-            SuperpixelSource::Labels(folder) => find_labels(folder, &image.name),
-            SuperpixelSource::Photos(folder) => find_photo(folder, &image.name),
-        };
+    let mut files = Files::default();
+    let is_sought = |image: &Image| wanted(image) && image.observations.iter().any(|seen| seen.point.is_some());
+    let sought: Vec<(ImageIndex, &str)> = (0..)
+        .zip(&reconstruction.images)
+        .filter(|(_, image)| is_sought(image))
+        .map(|(index, image)| (ImageIndex(index), image.name.as_str()))
+        .collect();
+    let names: Vec<&str> = sought.iter().map(|(_, name)| *name).collect();
+    for ((index, _), found) in sought.iter().zip(find_pictures(source, &names)?) {
         match found {
-            Some(path) => files.found.push((index, path)),
-            None => files.missing.push(index),
+            Some((path, how)) => {
+                if how != NameMatch::Path {
+                    files.elsewhere.push((files.found.len(), how));
+                }
+                files.found.push((*index, path));
+            }
+            None => files.missing.push(*index),
         }
     }
     match files.missing.first() {
@@ -119,7 +126,7 @@ fn find_files(
         Some(first) => Err(ImageryError::NothingFound {
             noun,
             images: files.missing.len(),
-            example: reconstruction.images[first.0 as usize].name.clone(),
+            example: looked_for(source, &reconstruction.images[first.0 as usize].name),
             folder: folder.to_path_buf(),
         }),
         None => Err(ImageryError::NoImages { noun, folder: folder.to_path_buf() }),
@@ -209,6 +216,12 @@ fn gather_warnings(
     if let Some(&first) = files.missing.first() {
         let (noun, count) = (source.noun(), files.missing.len());
         warnings.push(ImageryWarning::Missing { noun, count, example: name(first) });
+    }
+    if let Some((first, _)) = files.elsewhere.first() {
+        let (index, path) = &files.found[*first];
+        let (noun, count) = (source.noun(), files.elsewhere.len());
+        let by_stem = files.elsewhere.iter().filter(|(_, how)| *how == NameMatch::Stem).count();
+        warnings.push(ImageryWarning::OtherPath { noun, count, by_stem, example: (name(*index), path.clone()) });
     }
     let truncated: Vec<&PathBuf> = lifted.iter().filter_map(|image| image.truncated.as_ref()).collect();
     if let Some(&first) = truncated.first() {

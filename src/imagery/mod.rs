@@ -10,6 +10,7 @@
 
 mod colour;
 mod files;
+mod folder;
 mod labels;
 mod lift;
 mod memory;

@@ -46,11 +46,19 @@ pub enum ImageryError {
     Folder { noun: &'static str, folder: PathBuf, reason: String },
     #[error(
         "no {noun} found for any of the {images} images of the reconstruction; files go by the image's name, \
-         the first is {}; give the folder which that path starts from: {}",
+         for the first {} is looked for; give the folder which that path starts from: {}",
         escaped(example),
         shown(folder)
     )]
     NothingFound { noun: &'static str, images: usize, example: String, folder: PathBuf },
+    #[error(
+        "the {noun} of {} may be {} or {}; give it the path of the image, or take one away: {}",
+        escaped(name),
+        escaped(first),
+        escaped(second),
+        shown(folder)
+    )]
+    Ambiguous { noun: &'static str, name: String, first: String, second: String, folder: PathBuf },
     #[error("cannot read {noun} ({reason}): {}", shown(path))]
     Unreadable { noun: &'static str, reason: String, path: PathBuf },
     #[error(
@@ -95,6 +103,8 @@ fn shown(path: &Path) -> String {
 pub enum ImageryWarning {
     /// Images of the reconstruction without a file; `example` is the first one's name.
     Missing { noun: &'static str, count: usize, example: String },
+    /// Images whose file has another path than their name; `example` is the first one's name and file.
+    OtherPath { noun: &'static str, count: usize, by_stem: usize, example: (String, PathBuf) },
     /// JPEG files without their end; what is missing was decoded as plain grey.
     Truncated { count: usize, example: PathBuf },
     /// Photographs of another size than their camera's, which are taken as scaled; the first one's name and sizes.
@@ -109,6 +119,13 @@ impl std::fmt::Display for ImageryWarning {
             ImageryWarning::Missing { noun, count, example } => {
                 write!(f, "{count} images have no {noun} and add no superpixels (first: {})", escaped(example))
             }
+            ImageryWarning::OtherPath { noun, count, by_stem, example: (name, path) } => write!(
+                f,
+                "{count} images have their {noun} by the ending of the path, {by_stem} of them by the name without its \
+                 extension (first: {} is {})",
+                escaped(name),
+                shown(path)
+            ),
             ImageryWarning::Truncated { count, example } => write!(
                 f,
                 "{count} photographs end before their end marker and lack a part of the picture; copy them again \

@@ -3,6 +3,7 @@
 use super::ledger::Unbalanced;
 use crate::imagery::ImageryError;
 use crate::observer::Cancelled;
+use crate::reconstruction::AmbiguousName;
 
 /// A file that cannot be read, a sum that does not come out, or a cancellation. Why a pair was *refused* stands in the edge's and the part's
 /// `reason`.
@@ -11,6 +12,9 @@ use crate::observer::Cancelled;
 pub enum MergeError {
     #[error(transparent)]
     Imagery(#[from] ImageryError),
+    /// A photograph that may be either of two.
+    #[error("part {part}: {ambiguous}")]
+    AmbiguousName { part: String, ambiguous: AmbiguousName },
     #[error(transparent)]
     Unbalanced(#[from] Unbalanced),
     #[error(transparent)]

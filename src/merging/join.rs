@@ -60,8 +60,16 @@ pub fn join(parts: &[Part], options: &JoinOptions, observer: &dyn Observer) -> R
 fn warnings(parts: &[Part], edges: &[Edge]) -> Vec<String> {
     let of_part = |part: &Part| {
         let own = part.sfm.warnings.iter().map(ToString::to_string);
+        let names: Vec<&str> = part.sfm.fields.iter().map(|field| field.name.as_str()).collect();
+        let fields = (!names.is_empty()).then(|| {
+            format!(
+                "{} further properties of points are not carried into what is joined ({})",
+                names.len(),
+                names.join(", ")
+            )
+        });
         let imagery = part.superpixels.iter().flat_map(|s| s.warnings.iter().map(ToString::to_string));
-        own.chain(imagery).map(|text| format!("{}: {text}", part.name)).collect::<Vec<_>>()
+        own.chain(fields).chain(imagery).map(|text| format!("{}: {text}", part.name)).collect::<Vec<_>>()
     };
     parts.iter().flat_map(of_part).chain(edges.iter().filter_map(|edge| disagreement(parts, edge))).collect()
 }

@@ -17,7 +17,7 @@ pub(super) fn outward_hints(
         if r.images.is_empty() {
             hints[slot] += r.normals.get(i).copied().unwrap_or_default();
         }
-        for (image, _) in r.track(PointIndex(i as u32)) {
+        for (image, _) in r.seen_by(PointIndex(i as u32)) {
             let to_camera = cameras[image.0 as usize] - points[slot];
             hints[slot] += to_camera.try_normalize(0.0).unwrap_or_default();
         }
@@ -37,7 +37,7 @@ pub(super) fn viewers(
         let Some(slot) = slot.map(|s| s as usize) else { continue };
         let distance = |camera: u32| (cameras[camera as usize] - points[slot]).norm_squared();
         let [nearest, farthest]: &mut [Option<u32>; 2] = &mut viewers[slot];
-        for &(image, _) in r.track(PointIndex(i as u32)) {
+        for &(image, _) in r.seen_by(PointIndex(i as u32)) {
             if nearest.is_none_or(|n| distance(image.0) < distance(n)) {
                 *nearest = Some(image.0);
             }

@@ -5,36 +5,42 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::checker::Checker;
+use super::colmap_gaps::{posed_images, present_points};
 use super::frames::FramePoses;
 use super::ids::IdIndex;
 use super::tracks::{Links, tracks};
 use super::*;
-use crate::format::colmap::{CameraRecord, ImageRecord, Model, NO_POINT, ObservationRecord, PointRecords};
+use crate::format::colmap::{CameraRecord, ImageRecord, Miscount, Model, NO_POINT, ObservationRecord, PointRecords};
 use crate::geometry::{Camera, CameraModel, Point3};
 
 /// How far a quaternion's length may be from one without a word: text of few digits.
 const QUATERNION_TOLERANCE: f64 = 1e-3;
 
+/// The model of a folder.
 pub(super) fn reconstruction(folder: &Path, model: Model) -> Result<Reconstruction, ReconstructionError> {
     let mut check = Checker { folder: folder.into(), warnings: Vec::new() };
-    if model.points.ids.is_empty() {
-        return Err(ReconstructionError::NoPoints { path: folder.into() });
-    }
+    check_counts(&mut check, &model.miscounts);
     let frame_poses = FramePoses::new(&check, model.rigs.as_deref(), model.frames.as_deref())?;
+    let points = present_points(&mut check, model.points);
+    let image_records = posed_images(&mut check, model.images, &frame_poses);
     let camera_index = check.index("cameras", "camera", model.cameras.iter().map(|c| c.id.into()))?;
-    let image_index = check.index("images", "image", model.images.iter().map(|i| i.id.into()))?;
-    if model.points.ids.contains(&NO_POINT) {
+    let image_index = check.index("images", "image", image_records.iter().map(|i| i.id.into()))?;
+    if points.ids.contains(&NO_POINT) {
         let got = "18446744073709551615, which marks keypoints without a point";
         return Err(check.fault("points3D", format!("point {NO_POINT}"), "an id below 2^64 - 1", got));
     }
-    let point_index = check.index("points3D", "point", model.points.ids.iter().copied())?;
+    let point_index = check.index("points3D", "point", points.ids.iter().copied())?;
     let camera_ids = model.cameras.iter().map(|c| c.id).collect();
     let cameras = model.cameras.into_iter().map(|record| camera(&check, record)).collect::<Result<_, _>>()?;
-    let (images, links) = images(&mut check, model.images, &camera_index, &point_index, &frame_poses)?;
-    let track_elements = tracks(&mut check, &model.points, &image_index, &images, links)?;
-    check_points(&mut check, &model.points)?;
-    let PointRecords { ids, positions, colors, errors, track_starts, .. } = model.points;
+    let (images, links) = images(&mut check, image_records, &camera_index, &point_index, &frame_poses)?;
+    check.warn(WarningKind::NoImages, usize::from(images.is_empty()), || folder.display().to_string());
+    let tracks = tracks(&mut check, &points, &image_index, &images, links);
+    if !images.is_empty() {
+        warn_of_lonely_points(&mut check, &points.ids, &tracks.starts);
+    }
+    let PointRecords { ids, positions, colors, errors, .. } = points;
     Ok(Reconstruction {
+        format: SfmFormat::Colmap,
         cameras,
         camera_ids,
         images,
@@ -42,12 +48,20 @@ pub(super) fn reconstruction(folder: &Path, model: Model) -> Result<Reconstructi
         point_ids: ids,
         point_errors_px: errors,
         colors,
-        normals: Vec::new(),
-        track_starts,
-        track_elements,
+        track_starts: tracks.starts,
+        track_elements: tracks.elements,
         colmap: Some(ColmapParts { encoding: model.encoding, rigs: model.rigs, frames: model.frames }),
         warnings: check.warnings,
+        ..Reconstruction::default()
     })
+}
+
+fn check_counts(check: &mut Checker, miscounts: &[Miscount]) {
+    for Miscount { stem, announced, found } in miscounts {
+        let kind = if found < announced { WarningKind::FewerThanAnnounced } else { WarningKind::MoreThanAnnounced };
+        let example = || format!("{stem}.txt says {announced} and holds {found}");
+        check.warn(kind, found.abs_diff(*announced), example);
+    }
 }
 
 fn camera(check: &Checker, record: CameraRecord) -> Result<Camera, ReconstructionError> {
@@ -145,7 +159,6 @@ fn image(
     let camera = cameras.get(record.camera_id.into()).map(CameraIndex).ok_or_else(|| {
         check.fault("images", object(), "a camera of the model", format!("camera {}", record.camera_id))
     })?;
-    check.check_pose("images", object, &record.cam_from_world)?;
     let length = record.cam_from_world.quaternion_wxyz.iter().map(|v| v * v).sum::<f64>().sqrt();
     let is_off = (length - 1.0).abs() > QUATERNION_TOLERANCE;
     check.warn(WarningKind::UnnormalizedQuaternions, usize::from(is_off), object);
@@ -165,17 +178,10 @@ fn image(
     Ok(image)
 }
 
-fn check_points(check: &mut Checker, points: &PointRecords) -> Result<(), ReconstructionError> {
-    let is_bad = |i: &usize| !points.positions[*i].iter().all(|v| v.is_finite()) || !points.errors[*i].is_finite();
-    if let Some(bad) = (0..points.ids.len()).find(is_bad) {
-        let got = format!("{:?} with error {}", points.positions[bad], points.errors[bad]);
-        let object = format!("point {}", points.ids[bad]);
-        return Err(check.fault("points3D", object, "a finite position and a finite error", got));
-    }
+fn warn_of_lonely_points(check: &mut Checker, ids: &[u64], track_starts: &[u32]) {
     let is_alone = |ends: &&[u32]| ends[0] == ends[1];
-    if let Some(first) = points.track_starts.windows(2).position(|ends| is_alone(&ends)) {
-        let count = points.track_starts.windows(2).filter(is_alone).count();
-        check.warn(WarningKind::PointsWithoutTrack, count, || format!("point {}", points.ids[first]));
+    if let Some(first) = track_starts.windows(2).position(|ends| is_alone(&ends)) {
+        let count = track_starts.windows(2).filter(is_alone).count();
+        check.warn(WarningKind::PointsWithoutTrack, count, || format!("point {}", ids[first]));
     }
-    Ok(())
 }

@@ -1,6 +1,8 @@
 //! A reconstruction in memory.
 
+use super::warning::ReconstructionWarning;
 use crate::format::colmap::{Encoding, FrameRecord, RigRecord};
+use crate::format::ply::CloudField;
 use crate::geometry::{Camera, Point3, Rotation3, Vector3};
 
 /// Index into [`Reconstruction::images`].
@@ -15,16 +17,20 @@ pub struct PointIndex(pub u32);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CameraIndex(pub u32);
 
-/// Points, and where known the cameras that saw them. A PLY cloud has no images.
+/// Points, and where known the cameras that saw them. A cloud has no images.
 #[derive(Clone, Debug, Default)]
 pub struct Reconstruction {
+    /// What it was read from.
+    pub format: SfmFormat,
+    /// The coordinate reference system that the file names, as it names it.
+    pub crs: Option<CloudCrs>,
     pub cameras: Vec<Camera>,
     /// COLMAP's ids, one per camera.
     pub camera_ids: Vec<u32>,
     pub images: Vec<Image>,
     /// Sfm frame, sfm units.
     pub points: Vec<Point3<f64>>,
-    /// COLMAP's ids, one per point, or empty for a PLY cloud.
+    /// COLMAP's ids, one per point, or empty for a cloud.
     pub point_ids: Vec<u64>,
     /// Mean reprojection errors in pixels, one per point (-1 where COLMAP has not computed it), or empty.
     pub point_errors_px: Vec<f64>,
@@ -32,14 +38,101 @@ pub struct Reconstruction {
     pub colors: Vec<[u8; 3]>,
     /// Unit normals, one per point, or empty where the file has none. Zero where the file's has no direction.
     pub normals: Vec<Vector3<f64>>,
+    /// Further properties of the points of a cloud, each with a value per point, written out again as they are.
+    pub fields: Vec<CloudField>,
     /// Start of each point's track in `track_elements`, one more than there are points (or empty without images).
     pub track_starts: Vec<u32>,
     /// (image, index of the observation in the image).
     pub track_elements: Vec<(ImageIndex, u32)>,
+    /// Whether who saw a point may be relied on.
+    pub sight: Sight,
+    /// Where the cameras stood by their own positioning, if the file tells.
+    pub positions: Option<KnownPositions>,
     /// What only a COLMAP model has; `None` for a PLY cloud.
     pub colmap: Option<ColmapParts>,
     /// What was tolerated on reading, each kind once.
     pub warnings: Vec<ReconstructionWarning>,
+}
+
+/// What a reconstruction was read from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum SfmFormat {
+    /// Put together in memory.
+    #[default]
+    Memory,
+    Colmap,
+    Ply,
+    /// With the version, such as 1.4; `packed` names the packing: LAZ, or COPC.
+    Las {
+        version: (u8, u8),
+        packing: LasPacking,
+    },
+    E57,
+    OpenSfm,
+    Nerfstudio,
+    OpenMvg,
+    Bundler,
+    Nvm,
+}
+
+/// How the points of a LAS file are packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LasPacking {
+    Las,
+    Laz,
+    Copc,
+}
+
+impl std::fmt::Display for SfmFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let name = match self {
+            SfmFormat::Memory => "memory",
+            SfmFormat::Colmap => "COLMAP",
+            SfmFormat::Ply => "PLY",
+            SfmFormat::Las { version: (major, minor), packing } => {
+                let name = match packing {
+                    LasPacking::Las => "LAS",
+                    LasPacking::Laz => "LAZ",
+                    LasPacking::Copc => "COPC",
+                };
+                return write!(f, "{name} {major}.{minor}");
+            }
+            SfmFormat::E57 => "E57",
+            SfmFormat::OpenSfm => "OpenSfM",
+            SfmFormat::Nerfstudio => "nerfstudio",
+            SfmFormat::OpenMvg => "OpenMVG",
+            SfmFormat::Bundler => "Bundler",
+            SfmFormat::Nvm => "NVM",
+        };
+        f.write_str(name)
+    }
+}
+
+/// Camera positions that came with a reconstruction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownPositions {
+    /// What they count from: latitude and longitude in degrees, metres above the ellipsoid.
+    pub reference_lla: Option<[f64; 3]>,
+    /// East, north, up in metres, one for each image.
+    pub of_images: Vec<Option<[f64; 3]>>,
+}
+
+/// A coordinate reference system as a cloud's file names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CloudCrs {
+    /// WKT, or a list of GeoTIFF keys.
+    pub text: String,
+    /// The code of the projected (or else the geographic) system, where the file has it.
+    pub epsg: Option<u32>,
+}
+
+/// Whether tracks tell who saw a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sight {
+    #[default]
+    Believed,
+    /// Points, poses and keypoints contradict each other; tracks are kept, and nothing is concluded from them.
+    Denied,
 }
 
 /// The parts of a COLMAP model that are kept for writing it again.
@@ -76,58 +169,6 @@ pub struct Observation {
     pub point: Option<PointIndex>,
 }
 
-/// Something odd that real files hold, tolerated; `count` cases, the first of them named.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReconstructionWarning {
-    pub kind: WarningKind,
-    pub count: usize,
-    pub example: String,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WarningKind {
-    /// Keypoints name points that are not in the model; they count as keypoints without a point.
-    ObservationsOfMissingPoints,
-    /// A track lists a keypoint that belongs to another point or to none, or lacks one.
-    TracksThatImagesContradict,
-    /// Points that no track supports.
-    PointsWithoutTrack,
-    /// Images without any keypoint.
-    ImagesWithoutObservations,
-    /// An image's pose is not its frame's; the frame's is taken, as COLMAP does.
-    PosesThatFramesContradict,
-    /// Quaternions far from unit length; they were normalised.
-    UnnormalizedQuaternions,
-    /// Names that are not UTF-8; they were read as Latin-1.
-    NamesNotUtf8,
-    /// PLY vertices without a finite position; they were left out.
-    PointsWithoutPosition,
-    /// PLY normals without a direction.
-    NormalsWithoutDirection,
-    /// The folder holds further models.
-    FurtherModels,
-}
-
-impl std::fmt::Display for ReconstructionWarning {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let what = match self.kind {
-            WarningKind::ObservationsOfMissingPoints => "keypoints of points that the model does not hold, ignored",
-            WarningKind::TracksThatImagesContradict => {
-                "links between keypoints and points that only images or only tracks tell"
-            }
-            WarningKind::PointsWithoutTrack => "points without a track",
-            WarningKind::ImagesWithoutObservations => "images without keypoints",
-            WarningKind::PosesThatFramesContradict => "image poses that differ from their frames', the frames' taken",
-            WarningKind::UnnormalizedQuaternions => "quaternions not of unit length, normalised",
-            WarningKind::NamesNotUtf8 => "names that are not UTF-8, read as Latin-1",
-            WarningKind::PointsWithoutPosition => "points without a finite position, left out",
-            WarningKind::NormalsWithoutDirection => "normals without a direction",
-            WarningKind::FurtherModels => "further models beside the one that was read",
-        };
-        write!(f, "{} {what} (such as {})", self.count, self.example)
-    }
-}
-
 impl Reconstruction {
     /// Who saw a point: (image, index of the observation in the image). Empty where tracks are not known.
     pub fn track(&self, p: PointIndex) -> &[(ImageIndex, u32)] {
@@ -135,6 +176,14 @@ impl Reconstruction {
         match (self.track_starts.get(index), self.track_starts.get(index + 1)) {
             (Some(start), Some(end)) => &self.track_elements[*start as usize..*end as usize],
             _ => &[],
+        }
+    }
+
+    /// Who saw a point for certain: its track, unless the reconstruction contradicts itself.
+    pub fn seen_by(&self, p: PointIndex) -> &[(ImageIndex, u32)] {
+        match self.sight {
+            Sight::Believed => self.track(p),
+            Sight::Denied => &[],
         }
     }
 

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::{Reconstruction, ReconstructionError, ReconstructionWarning, WarningKind};
-use crate::format::ply::PlyCloud;
+use super::{Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind};
+use crate::format::ply::{CloudField, PlyCloud};
 use crate::geometry::{Point3, Vector3};
 
 pub(super) fn reconstruction(path: &Path, cloud: PlyCloud) -> Result<Reconstruction, ReconstructionError> {
@@ -25,8 +25,36 @@ pub(super) fn reconstruction(path: &Path, cloud: PlyCloud) -> Result<Reconstruct
         let example = format!("that of point {first}");
         warnings.push(ReconstructionWarning { kind: WarningKind::NormalsWithoutDirection, count, example });
     }
+    if let Some(line) = cloud.first_odd_line {
+        let (kind, example) = (WarningKind::OddRowsPassedOver, format!("line {line}"));
+        warnings.push(ReconstructionWarning { kind, count: cloud.odd_rows, example });
+    }
+    warnings.extend(dropped(WarningKind::FieldsDropped, cloud.lists));
+    let (splats, fields) = split_fields(cloud.fields);
+    warnings.extend(dropped(WarningKind::SplatFieldsDropped, splats.into_iter().map(|f| f.name).collect()));
     let points = cloud.positions.into_iter().map(Point3::from).collect();
-    Ok(Reconstruction { points, colors: cloud.colors, normals, warnings, ..Reconstruction::default() })
+    let format = SfmFormat::Ply;
+    Ok(Reconstruction { format, points, colors: cloud.colors, normals, fields, warnings, ..Reconstruction::default() })
+}
+
+/// Names what is not carried.
+fn dropped(kind: WarningKind, names: Vec<String>) -> Option<ReconstructionWarning> {
+    let count = names.len();
+    (count > 0).then(|| ReconstructionWarning { kind, count, example: names.join(", ") })
+}
+
+/// Begin the names of the parameters of a Gaussian splat: colours by spherical harmonics, opacity, logarithms of sizes,
+/// a quaternion (Kerbl et al. 2023).
+const SPLAT_NAMES: [&str; 5] = ["f_dc_", "f_rest_", "opacity", "scale_", "rot_"];
+
+/// The parameters of splats, which turn and grow with the frame, and what stays as it is. A cloud has splats where it has both
+/// their sizes and their turns.
+fn split_fields(fields: Vec<CloudField>) -> (Vec<CloudField>, Vec<CloudField>) {
+    let has = |name: &str| fields.iter().any(|f| f.name == name);
+    if !(has("scale_0") && has("rot_0")) {
+        return (Vec::new(), fields);
+    }
+    fields.into_iter().partition(|f| SPLAT_NAMES.iter().any(|start| f.name.starts_with(start)))
 }
 
 /// How far from one a length may be and still be taken for one: what rounding to f32 leaves.

@@ -1,83 +1,112 @@
-//! Finds out what a path holds, and reads it.
+//! Reads a reconstruction, whatever kind it is, and holds it against itself.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::{Reconstruction, ReconstructionWarning, WarningKind, colmap, ply};
-use crate::format::colmap::{ColmapError, missing_files, read_model};
-use crate::format::file::open_regular;
-use crate::format::ply::{PlyError, is_ply, read_ply};
+use super::consistency::PoseReading;
+use super::recognise::{SfmSource, recognise};
+use super::{Reconstruction, ReconstructionWarning, WarningKind};
+use super::{bundler, cloud, colmap, consistency, nerfstudio, nvm, openmvg, opensfm, ply};
+use crate::format::colmap::{ColmapError, cloud_file, missing_files, read_model};
+use crate::format::e57::{E57Error, read_e57};
+use crate::format::las::{LasError, read_las};
+use crate::format::nerfstudio::read_nerfstudio;
+use crate::format::nvm::read_nvm;
+use crate::format::openmvg::read_openmvg;
+use crate::format::ply::{PlyError, read_ply};
+use crate::format::sfm_file::SfmFileError;
 
 /// Why a reconstruction could not be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReconstructionError {
     #[error("cannot read {path}: {source}")]
     Unreadable { path: PathBuf, source: std::io::Error },
     #[error(
-        "{path}: expected a folder with cameras, images and points3D (.bin or .txt; also in its sparse/0, sparse or 0), \
-         or a PLY file, got {got}"
+        "{path}: expected a folder with cameras, images and points3D (.bin or .txt; also in its sparse/0, sparse or 0), a file of \
+         points (PLY, LAS, LAZ, E57), or a reconstruction of OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM (NVM), got {got}"
     )]
     NotAReconstruction { path: PathBuf, got: String },
     #[error(transparent)]
     Colmap(#[from] ColmapError),
     #[error(transparent)]
     Ply(#[from] PlyError),
-    #[error("{path}, {object}: expected {expected}, got {got}; export the model again from COLMAP")]
+    #[error(transparent)]
+    Las(#[from] LasError),
+    #[error(transparent)]
+    E57(#[from] E57Error),
+    #[error(transparent)]
+    File(#[from] SfmFileError),
+    #[error("{path}, {object}: expected {expected}, got {got}; write the model again with the program that made it")]
     Inconsistent { path: PathBuf, object: String, expected: String, got: String },
     #[error("{path}: the reconstruction has no points; give one that has")]
     NoPoints { path: PathBuf },
+    #[error(
+        "{path}: the coordinates are latitude and longitude in degrees, which make no shape; project them first \
+         (pdal translate IN OUT reprojection --filters.reprojection.out_srs=EPSG:...)"
+    )]
+    Degrees { path: PathBuf },
+    #[error(
+        "{path}: the model contradicts itself: {told}; {reading}; write world-to-camera poses with x right, y down and z ahead, \
+         as COLMAP does"
+    )]
+    Contradiction { path: PathBuf, told: String, reading: PoseReading },
 }
 
-/// Where models lie below a folder that a user names.
-const MODEL_SUBFOLDERS: [&str; 4] = ["", "sparse/0", "sparse", "0"];
-
-/// A folder with a COLMAP model (bin or txt; the folder itself, or its sparse/0, sparse or 0 subfolder), or one PLY
-/// file. By content, not only by name. One file of a model stands for its folder.
+/// A folder with a COLMAP model (bin or txt; the folder itself, or where tools put it below), a cloud (PLY, LAS, LAZ, COPC, E57), or
+/// what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote. By content, not only by name. One file of a COLMAP model
+/// stands for its folder.
 pub fn read_reconstruction(path: &Path) -> Result<Reconstruction, ReconstructionError> {
-    if !path.is_dir() {
-        return read_file(path);
-    }
-    let folders = MODEL_SUBFOLDERS.iter().map(|sub| if sub.is_empty() { path.into() } else { path.join(sub) });
-    match folders.into_iter().find(|folder: &PathBuf| is_model(folder)) {
-        Some(folder) => read_colmap(&folder),
-        None => {
-            let got = format!("a folder without {}", missing_files(path).join(" and "));
-            Err(ReconstructionError::NotAReconstruction { path: path.into(), got })
-        }
-    }
-}
-
-fn is_model(folder: &Path) -> bool {
-    missing_files(folder).is_empty()
-}
-
-fn read_file(path: &Path) -> Result<Reconstruction, ReconstructionError> {
-    let mut start = Vec::new();
-    open_regular(path)
-        .and_then(|file| file.take(4).read_to_end(&mut start))
-        .map_err(|source| ReconstructionError::Unreadable { path: path.into(), source })?;
-    if is_ply(&start) {
-        return ply::reconstruction(path, read_ply(path)?);
-    }
-    let is_model_file = path.file_stem().is_some_and(|stem| {
-        ["cameras", "images", "points3D", "rigs", "frames"].iter().any(|known| stem.to_str() == Some(known))
-    });
-    match path.parent() {
-        Some(folder) if is_model_file && is_model(folder) => read_colmap(folder),
-        _ => Err(ReconstructionError::NotAReconstruction { path: path.into(), got: "another kind of file".into() }),
-    }
+    let source = recognise(path)?;
+    let mut reconstruction = match &source {
+        SfmSource::Colmap(folder) => read_colmap(folder)?,
+        SfmSource::Ply(path) => ply::reconstruction(path, read_ply(path)?)?,
+        SfmSource::Las(path) => cloud::of_las(path, read_las(path)?)?,
+        SfmSource::E57(path) => cloud::of_e57(path, read_e57(path)?)?,
+        SfmSource::OpenSfm(path) => opensfm::read(path)?,
+        SfmSource::Nerfstudio(path) => nerfstudio::reconstruction(path, &read_nerfstudio(path)?)?,
+        SfmSource::OpenMvg(path) => openmvg::reconstruction(path, &read_openmvg(path)?)?,
+        SfmSource::Bundler(path) => bundler::read(path)?,
+        SfmSource::Nvm(path) => nvm::reconstruction(path, &read_nvm(path)?)?,
+    };
+    consistency::check(source.path(), &mut reconstruction)?;
+    Ok(reconstruction)
 }
 
 fn read_colmap(folder: &Path) -> Result<Reconstruction, ReconstructionError> {
-    let mut reconstruction = colmap::reconstruction(folder, read_model(folder)?)?;
+    let model = read_model(folder)?;
+    let mut reconstruction = colmap::reconstruction(folder, model)?;
+    if let Some(cloud) = cloud_file(folder) {
+        add_cloud(&mut reconstruction, &cloud)?;
+    }
+    if reconstruction.points.is_empty() {
+        return Err(ReconstructionError::NoPoints { path: folder.into() });
+    }
     reconstruction.warnings.extend(further_models(folder));
     Ok(reconstruction)
+}
+
+/// Points that stand in a PLY file beside cameras and images.
+fn add_cloud(model: &mut Reconstruction, path: &Path) -> Result<(), ReconstructionError> {
+    let cloud = ply::reconstruction(path, read_ply(path)?)?;
+    let count = cloud.points.len();
+    model.point_ids = (1..=count as u64).collect();
+    (model.points, model.colors, model.normals, model.fields) =
+        (cloud.points, cloud.colors, cloud.normals, cloud.fields);
+    (model.track_starts, model.track_elements, model.point_errors_px) = (Vec::new(), Vec::new(), Vec::new());
+    // Keypoints cannot name points of a file without ids.
+    model.images.iter_mut().flat_map(|image| &mut image.observations).for_each(|o| o.point = None);
+    model.warnings.retain(|warning| warning.kind != WarningKind::ObservationsOfMissingPoints);
+    model.warnings.extend(cloud.warnings);
+    let example = path.display().to_string();
+    model.warnings.push(ReconstructionWarning { kind: WarningKind::PointsFromPly, count, example });
+    Ok(())
 }
 
 /// COLMAP writes the pieces that it could not connect as 0, 1, 2, ...; only one is read.
 fn further_models(folder: &Path) -> Option<ReconstructionWarning> {
     let number: u32 = folder.file_name()?.to_str()?.parse().ok()?;
     let beside = |n: u32| folder.with_file_name(n.to_string());
+    let is_model = |folder: &Path| missing_files(folder).is_empty();
     let mut further = (0..).take_while(|n| *n == number || is_model(&beside(*n))).filter(|n| *n != number);
     let first = further.next()?;
     let example = beside(first).display().to_string();

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::checker::Checker;
 use super::ids::IdIndex;
-use super::{Image, ImageIndex, PointIndex, ReconstructionError, WarningKind};
+use super::{Image, ImageIndex, PointIndex, WarningKind};
 use crate::format::colmap::PointRecords;
 
 /// Track elements checked at once; any number gives the same result.
@@ -35,37 +35,46 @@ impl Links {
     }
 }
 
-/// The track elements with indices for ids. `links` are those that the images tell.
+/// Tracks over images that are there.
+pub(super) struct Tracks {
+    pub starts: Vec<u32>,
+    pub elements: Vec<(ImageIndex, u32)>,
+}
+
+/// Stands for an image that is not in the model.
+const NO_IMAGE: ImageIndex = ImageIndex(u32::MAX);
+
+/// The track elements with indices for ids, without those that nobody could have seen: of images that are not in the model, and
+/// those that the images' keypoints deny. `links` are those that the images tell.
 pub(super) fn tracks(
     check: &mut Checker,
     points: &PointRecords,
     image_index: &IdIndex,
     images: &[Image],
     links: Links,
-) -> Result<Vec<(ImageIndex, u32)>, ReconstructionError> {
+) -> Tracks {
     let counts: Vec<usize> = images.iter().map(|image| image.observations.len()).collect();
     let starts: Vec<usize> = (0..points.track_elements.len()).step_by(ELEMENTS_AT_ONCE).collect();
     let pieces: Vec<_> = starts.into_par_iter().map(|start| piece(start, points, image_index, &counts)).collect();
     let mut elements = Vec::with_capacity(points.track_elements.len());
     let mut links_of_tracks = Links::default();
-    for piece in pieces {
-        let (piece, links) = piece.map_err(|element| out_of_range(check, element, points, image_index, &counts))?;
+    for (piece, links) in pieces {
         elements.extend(piece);
         links_of_tracks.join(links);
     }
-    if links_of_tracks != links {
-        warn_of_contradictions(check, points, &elements, images, links.count);
+    if links_of_tracks == links && links.count == elements.len() {
+        return Tracks { starts: points.track_starts.clone(), elements };
     }
-    Ok(elements)
+    confirmed(check, points, &elements, images, links.count)
 }
 
-/// Some elements and their links, or the first that names what is not there.
+/// Some elements, and the links of those that name keypoints that are there.
 fn piece(
     start: usize,
     points: &PointRecords,
     image_index: &IdIndex,
     counts: &[usize],
-) -> Result<(Vec<(ImageIndex, u32)>, Links), usize> {
+) -> (Vec<(ImageIndex, u32)>, Links) {
     let end = (start + ELEMENTS_AT_ONCE).min(points.track_elements.len());
     let mut point = point_of(points, start);
     let mut elements = Vec::with_capacity(end - start);
@@ -75,14 +84,13 @@ fn piece(
             point += 1;
         }
         let (image_id, keypoint) = points.track_elements[element];
-        let image = image_index.get(image_id.into()).ok_or(element)?;
-        if keypoint as usize >= counts[image as usize] {
-            return Err(element);
+        let image = image_index.get(image_id.into()).map_or(NO_IMAGE, ImageIndex);
+        if counts.get(image.0 as usize).is_some_and(|count| (keypoint as usize) < *count) {
+            links.add(image, keypoint, PointIndex(point as u32));
         }
-        links.add(ImageIndex(image), keypoint, PointIndex(point as u32));
-        elements.push((ImageIndex(image), keypoint));
+        elements.push((image, keypoint));
     }
-    Ok((elements, links))
+    (elements, links)
 }
 
 /// The point that a track element belongs to.
@@ -90,50 +98,45 @@ fn point_of(points: &PointRecords, element: usize) -> usize {
     points.track_starts.partition_point(|start| *start as usize <= element) - 1
 }
 
-fn out_of_range(
-    check: &Checker,
-    element: usize,
-    points: &PointRecords,
-    image_index: &IdIndex,
-    counts: &[usize],
-) -> ReconstructionError {
-    let (image_id, keypoint) = points.track_elements[element];
-    let object = format!("track of point {}", points.ids[point_of(points, element)]);
-    match image_index.get(image_id.into()) {
-        None => check.fault("points3D", object, "images of the model", format!("image {image_id}")),
-        Some(image) => {
-            let expected = format!("one of the {} keypoints of image {image_id}", counts[image as usize]);
-            check.fault("points3D", object, &expected, format!("keypoint {keypoint}"))
-        }
-    }
-}
-
-/// Counts the links that only the tracks or only the images tell.
-fn warn_of_contradictions(
+/// The elements that the keypoints confirm; the others, and the links that only the images tell, are counted.
+fn confirmed(
     check: &mut Checker,
     points: &PointRecords,
     elements: &[(ImageIndex, u32)],
     images: &[Image],
     links_of_images: usize,
-) {
-    let mut agreed = 0;
+) -> Tracks {
+    let mut kept = Tracks { starts: Vec::with_capacity(points.ids.len() + 1), elements: Vec::new() };
+    kept.starts.push(0);
+    let mut denied = 0;
     let mut example = None;
     for (point, ends) in points.track_starts.windows(2).enumerate() {
-        for (image, keypoint) in &elements[ends[0] as usize..ends[1] as usize] {
-            let image = &images[image.0 as usize];
-            if image.observations[*keypoint as usize].point == Some(PointIndex(point as u32)) {
-                agreed += 1;
+        for element in ends[0] as usize..ends[1] as usize {
+            let (image, keypoint) = elements[element];
+            let Some(seen_by) = images.get(image.0 as usize) else {
+                let id = points.track_elements[element].0;
+                check.warn(WarningKind::TracksOfMissingImages, 1, || {
+                    format!("image {id} in the track of point {}", points.ids[point])
+                });
+                continue;
+            };
+            let observation = seen_by.observations.get(keypoint as usize);
+            if observation.and_then(|o| o.point) == Some(PointIndex(point as u32)) {
+                kept.elements.push((image, keypoint));
             } else {
+                denied += 1;
                 example.get_or_insert_with(|| {
-                    format!("keypoint {keypoint} of image {} in the track of point {}", image.id, points.ids[point])
+                    format!("keypoint {keypoint} of image {} in the track of point {}", seen_by.id, points.ids[point])
                 });
             }
         }
+        kept.starts.push(kept.elements.len() as u32);
     }
-    let count = elements.len() - agreed + links_of_images.saturating_sub(agreed);
+    let count = denied + links_of_images.saturating_sub(kept.elements.len());
     check.warn(WarningKind::TracksThatImagesContradict, count, || {
         example.unwrap_or_else(|| "keypoints whose points' tracks lack them".to_string())
     });
+    kept
 }
 
 #[cfg(test)]

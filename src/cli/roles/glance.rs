@@ -8,7 +8,7 @@ use crate::format::JsonKind;
 use crate::format::colmap::missing_files;
 use crate::format::file::open_regular;
 use crate::format::gltf::is_glb;
-use crate::format::ply::is_ply;
+use crate::reconstruction::{SfmSource, recognise};
 
 use super::Role;
 
@@ -26,11 +26,8 @@ const CITY_ENDINGS: [&str; 6] = ["obj", "gltf", "glb", "json", "jsonl", "cityjso
 /// What the JSON of a city has near its beginning: glTF, CityJSON.
 const CITY_KEYS: [&str; 3] = ["\"asset\"", "\"CityJSON", "\"CityObjects\""];
 
-/// Where a model is read from below the folder that is given, without a word.
+/// Where a model is missed when some of its files are there.
 const MODEL_SUBFOLDERS: [&str; 4] = ["", "sparse/0", "sparse", "0"];
-
-/// Files of a model, one of which may stand for all.
-const MODEL_STEMS: [&str; 5] = ["cameras", "images", "points3D", "rigs", "frames"];
 
 /// What is seen at a path. Several things may be: a project's folder holds images and a model.
 #[derive(Debug, Default)]
@@ -41,7 +38,8 @@ pub struct Glance {
     photograph: Option<PathBuf>,
     /// The first PNG file in grey; photographs may be grey, too.
     grey_image: Option<PathBuf>,
-    is_cloud: bool,
+    /// A reconstruction that is no COLMAP model.
+    other_sfm: Option<SfmSource>,
     model: Option<Model>,
     /// The report in a folder that an alignment has become.
     report: Option<PathBuf>,
@@ -52,7 +50,6 @@ enum Model {
     AtHand,
     /// Some of its files.
     InPart,
-    Below(PathBuf),
 }
 
 impl Glance {
@@ -71,38 +68,30 @@ impl Glance {
         let text = text.trim_start_matches('\u{feff}').trim_start();
         let is_json = text.starts_with('{');
         let json = if is_json { JsonKind::of(text).or_else(|| kind_of_long(text)) } else { None };
-        let is_cloud = is_ply(&start);
+        let (model, other_sfm) = sfm_at(path);
         let is_named = |endings: &[&str]| {
             path.extension().is_some_and(|is| endings.iter().any(|ending| is.eq_ignore_ascii_case(ending)))
         };
         let is_city = is_glb(&start)
             || (is_json && json.is_none() && (is_named(&["gltf"]) || CITY_KEYS.iter().any(|key| text.contains(key))))
-            || (!is_json && !is_cloud && (is_named(&["obj"]) || text.lines().any(is_obj_vertex)));
-        let stands_for_model = path.file_stem().is_some_and(|stem| MODEL_STEMS.iter().any(|known| stem == *known))
-            && !is_city
-            && !is_cloud;
-        let model = path.parent().filter(|folder| stands_for_model && missing_files(folder).is_empty());
-        Glance { is_city, json, is_cloud, model: model.map(|_| Model::AtHand), ..Glance::default() }
+            || (!is_json && other_sfm.is_none() && (is_named(&["obj"]) || text.lines().any(is_obj_vertex)));
+        let model = model.filter(|_| !is_city);
+        Glance { is_city, json, other_sfm, model, ..Glance::default() }
     }
 
     fn at_folder(path: &Path) -> Glance {
         let report = Some(path.join("alignment.json")).filter(|report| report.is_file());
-        let mut found = Glance { report, ..Glance::default() };
-        for sub in MODEL_SUBFOLDERS {
-            match missing_files(&path.join(sub)).len() {
-                0 => found.model = Some(Model::AtHand),
-                1 | 2 if found.model.is_none() => found.model = Some(Model::InPart),
-                _ => {}
-            }
+        let (model, other_sfm) = sfm_at(path);
+        let mut found = Glance { report, model, other_sfm, ..Glance::default() };
+        let is_part = |sub: &&str| [1, 2].contains(&missing_files(&path.join(sub)).len());
+        if found.model.is_none() && found.other_sfm.is_none() && MODEL_SUBFOLDERS.iter().any(|sub| is_part(&sub)) {
+            found.model = Some(Model::InPart);
         }
         let (mut looked_at, mut cities_looked_at) = (0, 0);
         let top = path.to_path_buf();
         let mut folders = VecDeque::from([top.clone()]);
         while let Some(folder) = folders.pop_front().filter(|_| looked_at < FOLDERS_LOOKED_AT) {
             looked_at += 1;
-            if found.model.is_none() && missing_files(&folder).is_empty() {
-                found.model = Some(Model::Below(folder.clone()));
-            }
             let mut images = 0;
             for path in entries(&folder) {
                 if path.is_dir() {
@@ -132,13 +121,13 @@ impl Glance {
 
     /// True where anything was recognised.
     pub fn is_known(&self) -> bool {
-        let is_other = self.is_city || self.json.is_some() || self.is_cloud || self.has_images();
+        let is_other = self.is_city || self.json.is_some() || self.other_sfm.is_some() || self.has_images();
         // What a model lacks is told by its reader.
         !matches!(self.model, Some(Model::InPart)) && (is_other || self.model.is_some())
     }
 
     pub fn is_reconstruction(&self) -> bool {
-        self.is_cloud || matches!(self.model, Some(Model::AtHand))
+        self.other_sfm.is_some() || matches!(self.model, Some(Model::AtHand))
     }
 
     pub fn has_images(&self) -> bool {
@@ -152,16 +141,14 @@ impl Glance {
 
     /// What is wrong with this in a role, and where it belongs; `None` where the reader of the role says it better.
     pub fn complaint(&self, role: Role) -> Option<String> {
-        if let (Some(Model::Below(folder)), Role::Sfm | Role::Part) = (&self.model, role) {
-            let folder = folder.display();
-            return Some(format!("a folder without a model of its own, but one lies in {folder}; give that"));
-        }
         if let (Some(report), Role::Start | Role::Alignment) = (&self.report, role) {
             return Some(format!("a folder, expected {}; give {}", expected(role), report.display()));
         }
         let remedy = match role {
             // What is in a PLY file may be a city; its reader asks for another format.
-            Role::City | Role::Terrain | Role::CityOption if self.is_cloud => return None,
+            Role::City | Role::Terrain | Role::CityOption if matches!(self.other_sfm, Some(SfmSource::Ply(_))) => {
+                return None;
+            }
             Role::City if self.model.is_some() => "the city comes first, the reconstruction second",
             Role::Sfm if self.is_city => {
                 "the city comes first, the reconstruction second (further meshes go with --terrain)"
@@ -176,10 +163,12 @@ impl Glance {
 
     fn words(&self) -> String {
         let image = self.photograph.as_ref().or(self.grey_image.as_ref());
+        if let (Some(source), false) = (&self.other_sfm, self.is_city) {
+            return words_of(source).into();
+        }
         match (self.json, image) {
             (Some(kind), _) => kind.words().into(),
             _ if self.is_city => "a city model".into(),
-            _ if self.is_cloud => "a PLY cloud".into(),
             _ if self.model.is_some() => "a COLMAP model".into(),
             (_, Some(image)) => format!("a folder of images ({})", image.file_name().unwrap_or_default().display()),
             _ => "something else".into(),
@@ -194,17 +183,40 @@ impl Glance {
             }
             Some(_) => "`cityweld --help` shows what goes where",
             None if self.is_city => "give it as CITY",
-            None if self.is_cloud || self.model.is_some() => "give it as the reconstruction",
+            None if self.other_sfm.is_some() || self.model.is_some() => "give it as the reconstruction",
             None if self.grey_image.is_none() => "give photographs with --photos",
             None => "give photographs with --photos, label images with --labels",
         }
     }
 }
 
+/// The reconstruction that is read from a path: a COLMAP model, or another.
+fn sfm_at(path: &Path) -> (Option<Model>, Option<SfmSource>) {
+    match recognise(path) {
+        Ok(SfmSource::Colmap(_)) => (Some(Model::AtHand), None),
+        Ok(other) => (None, Some(other)),
+        Err(_) => (None, None),
+    }
+}
+
+fn words_of(source: &SfmSource) -> &'static str {
+    match source {
+        SfmSource::Colmap(_) => "a COLMAP model",
+        SfmSource::Ply(_) => "a PLY cloud",
+        SfmSource::Las(_) => "a LAS cloud",
+        SfmSource::E57(_) => "an E57 cloud",
+        SfmSource::OpenSfm(_) => "a reconstruction of OpenSfM",
+        SfmSource::Nerfstudio(_) => "cameras of nerfstudio",
+        SfmSource::OpenMvg(_) => "a reconstruction of OpenMVG",
+        SfmSource::Bundler(_) => "a reconstruction of Bundler",
+        SfmSource::Nvm(_) => "a reconstruction of VisualSFM",
+    }
+}
+
 fn expected(role: Role) -> &'static str {
     match role {
         Role::City | Role::Terrain | Role::CityOption => "a city model (OBJ, glTF, GLB or CityJSON)",
-        Role::Sfm | Role::Part => "a reconstruction (a folder with a COLMAP model, or a PLY cloud)",
+        Role::Sfm | Role::Part => "a reconstruction (a COLMAP folder, a cloud, or what other tools wrote)",
         Role::Start => "a start (JSON), or an alignment.json",
         Role::Alignment => "an alignment.json",
         Role::Labels => "a folder of label images (PNG, grey)",

@@ -4,7 +4,14 @@
 #[derive(Debug)]
 pub(super) enum Fault {
     Unreadable(std::io::Error),
-    Malformed { at: u64, object: String, expected: String, got: String },
+    /// Text of 16 bits a character.
+    Utf16,
+    Malformed {
+        at: u64,
+        object: String,
+        expected: String,
+        got: String,
+    },
 }
 
 impl Fault {

@@ -10,6 +10,6 @@ mod records;
 mod text;
 mod write;
 
-pub use model::{ColmapError, missing_files, read_model, record_file};
+pub use model::{ColmapError, cloud_file, missing_files, read_model, record_file};
 pub use records::*;
 pub use write::{cameras_file, can_be_named, frames_file, rigs_file, write_images, write_points};

@@ -30,6 +30,18 @@ pub struct Model {
     pub frames: Option<Vec<FrameRecord>>,
     pub images: Vec<ImageRecord>,
     pub points: PointRecords,
+    /// Text files that hold another number of records than they say.
+    pub miscounts: Vec<Miscount>,
+}
+
+/// A file that holds another number of records than the comment before them counts: one that was cut at the end of a line, or
+/// edited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Miscount {
+    /// The file's name without its extension.
+    pub stem: &'static str,
+    pub announced: usize,
+    pub found: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,7 @@
 //! Text record files: one record a line (two for images), values apart by blanks, comments led by `#`.
+//!
+//! Scripts write these files too: values apart by commas as kapture does it (COLMAP up to 3.13 reads that), and whole numbers
+//! as `960.0`. Both are read.
 
 use std::io::BufRead;
 
@@ -15,6 +18,7 @@ const SHOWN_BYTES: usize = 40;
 
 /// One line of a file, read value by value.
 struct Line<'a> {
+    whole: &'a [u8],
     /// What is left of the line.
     rest: &'a [u8],
     /// Position of `rest` in the file.
@@ -26,7 +30,7 @@ struct Line<'a> {
 
 impl<'a> Line<'a> {
     fn new(bytes: &'a [u8], at: usize, kind: &'static str) -> Line<'a> {
-        Line { rest: bytes, at, kind, id: None }
+        Line { whole: bytes, rest: bytes, at, kind, id: None }
     }
 
     fn fault(&self, expected: &str, got: &[u8]) -> Fault {
@@ -47,7 +51,7 @@ impl<'a> Line<'a> {
     }
 
     fn skip_blanks(&mut self) {
-        let blanks = self.rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(self.rest.len());
+        let blanks = self.rest.iter().position(|b| !is_gap(b)).unwrap_or(self.rest.len());
         self.skip(blanks);
     }
 
@@ -62,17 +66,34 @@ impl<'a> Line<'a> {
         self.token()
     }
 
-    /// What stands here up to the next blank.
+    /// What stands here up to the next gap.
     fn token(&self) -> &'a [u8] {
-        let length = self.rest.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(self.rest.len());
+        let length = self.rest.iter().position(is_gap).unwrap_or(self.rest.len());
         &self.rest[..length]
+    }
+
+    /// Takes a number of `length` bytes off the line, unless a comma within it may be a decimal one: `0,5` beside blanks.
+    fn take_number(&mut self, length: usize) -> Result<(), Fault> {
+        let [number, rest] = [&self.rest[..length], &self.rest[length..]];
+        if rest.first() == Some(&b',') && rest.get(1).is_some_and(u8::is_ascii_digit) && !number.contains(&b'.') {
+            let has_blanks = self.whole.trim_ascii().windows(2).any(|w| w[0] != b',' && w[1].is_ascii_whitespace());
+            if has_blanks {
+                let digits = rest[1..].iter().take_while(|b| b.is_ascii_digit()).count();
+                return Err(self.fault(
+                    "numbers with a decimal point and blanks between them (0.5 for 0,5)",
+                    &self.rest[..length + 1 + digits],
+                ));
+            }
+        }
+        self.skip(length);
+        Ok(())
     }
 
     fn f64(&mut self, expected: &str) -> Result<f64, Fault> {
         self.skip_blanks();
         match fast_float2::parse_partial::<f64, _>(self.rest) {
-            Ok((value, length)) if self.rest.get(length).is_none_or(u8::is_ascii_whitespace) => {
-                self.skip(length);
+            Ok((value, length)) if self.rest.get(length).is_none_or(is_gap) => {
+                self.take_number(length)?;
                 Ok(value)
             }
             _ => Err(self.fault(expected, self.token())),
@@ -90,10 +111,17 @@ impl<'a> Line<'a> {
             }
             length += 1;
         }
-        if length == 0 || self.rest.get(length).is_some_and(|b| !b.is_ascii_whitespace()) {
+        if length == 0 {
             return Err(self.fault(expected, self.token()));
         }
-        self.skip(length);
+        // `960.0` is a whole number, too.
+        if self.rest.get(length) == Some(&b'.') {
+            length += 1 + self.rest[length + 1..].iter().take_while(|b| **b == b'0').count();
+        }
+        if self.rest.get(length).is_some_and(|b| !is_gap(b)) {
+            return Err(self.fault(expected, self.token()));
+        }
+        self.take_number(length)?;
         Ok(value)
     }
 
@@ -139,6 +167,20 @@ impl<'a> Line<'a> {
             token => Err(self.fault("the end of the line", token)),
         }
     }
+}
+
+/// What stands between two values.
+fn is_gap(byte: &u8) -> bool {
+    byte.is_ascii_whitespace() || *byte == b','
+}
+
+/// How many records the comment that COLMAP puts before them counts: `# Number of points: 745, mean track length: ...`.
+pub(super) fn announced(bytes: &[u8]) -> Option<usize> {
+    let comments = lines(bytes).map(|(_, line)| line).take_while(|line| line.first() == Some(&b'#'));
+    comments.filter_map(|line| std::str::from_utf8(line).ok()).find_map(|line| {
+        let count = line.strip_prefix("# Number of ")?.split_once(": ")?.1;
+        count.split([',', ' ']).next()?.parse().ok()
+    })
 }
 
 /// The lines of `bytes` with their positions; `skip_until` finds line ends faster than a loop over bytes.
@@ -242,8 +284,9 @@ fn image(mut line: Line, (at, points): (usize, &[u8])) -> Result<ImageRecord, Fa
     while !line.is_at_end() {
         let x = line.f64("a keypoint X Y POINT3D_ID")?;
         let y = line.f64("a keypoint X Y POINT3D_ID")?;
-        let point_id = if line.peek() == b"-1" {
-            line.skip(2);
+        let token = line.peek();
+        let point_id = if token == b"-1" || token == b"-1.0" {
+            line.skip(token.len());
             NO_POINT
         } else {
             line.u64("a point id or -1")?

@@ -1,0 +1,262 @@
+//! Points of LAS files, LAZ and COPC among them (ASPRS LAS 1.4 R15), with the `las` crate, a piece at a time.
+//!
+//! The crate believes the header's count; it is held against the bytes of the file first.
+
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use las::crs::GeoTiffData;
+
+use super::file::open_regular;
+use super::ply::{CloudField, FieldKind};
+use super::wkt::{WktCrs, WktUnit, wkt_crs};
+
+/// Why a LAS file could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum LasError {
+    #[error("cannot read {path}: {source}")]
+    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("{path}, {place}: {problem}; export the points again as LAS or LAZ")]
+    Malformed { path: PathBuf, place: String, problem: String },
+}
+
+/// What a file says of its points.
+#[derive(Clone, Debug, Default)]
+pub struct LasCloud {
+    pub version: (u8, u8),
+    pub is_compressed: bool,
+    pub is_copc: bool,
+    pub positions: Vec<[f64; 3]>,
+    /// One per point, or empty where the file has none.
+    pub colors: Vec<[u8; 3]>,
+    /// Intensity, class, ..., each with one value per point.
+    pub fields: Vec<CloudField>,
+    /// Bytes of each point that the specification has no name for, which are not carried.
+    pub extra_bytes: usize,
+    /// Points of the classes 7 and 18 (noise), and those that are marked as withheld; left out.
+    pub noise: usize,
+    pub crs: Option<LasCrs>,
+}
+
+/// The coordinate reference system as the file names it, and what of it could be understood.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LasCrs {
+    pub text: String,
+    pub understood: WktCrs,
+}
+
+pub fn is_las(start: &[u8]) -> bool {
+    start.starts_with(b"LASF")
+}
+
+/// Points that are decoded at once.
+const POINTS_AT_ONCE: u64 = 1 << 16;
+
+/// Points that a byte of a compressed file may hold. Chosen: clouds as they are come to one in two to four bytes; a file of the
+/// same point again and again, which is none, to a thousand in one.
+const MOST_POINTS_OF_A_BYTE: u64 = 8;
+
+/// Points of any compressed file that are not asked about.
+const POINTS_OF_ANY_FILE: u64 = 1 << 16;
+
+/// Records before the points, with the name of what they hold, and their length.
+const RECORD_HEAD_BYTES: u64 = 54;
+
+pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
+    let unreadable = |source| LasError::Unreadable { path: path.into(), source };
+    let fault = |place: String, problem: String| LasError::Malformed { path: path.into(), place, problem };
+    let mut file = open_regular(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    check_head(&mut file, length).map_err(|problem| fault("header".into(), problem))?;
+    file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
+    let told = |error: las::Error| super::escaped(&error.to_string()).to_string();
+    let mut reader = las::Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(error)))?;
+    let header = reader.header().clone();
+    let count = header.number_of_points();
+    check_count(&header, length).map_err(|problem| fault("header".into(), problem))?;
+    let mut cloud = Collector::new(&header);
+    let mut read = 0;
+    while read < count {
+        let piece = reader.read_points(POINTS_AT_ONCE).map_err(|error| {
+            fault(format!("point {read} to {} of {count}", (read + POINTS_AT_ONCE).min(count)), told(error))
+        })?;
+        if piece.is_empty() {
+            return Err(fault(format!("point {read} of {count}"), "the file ends before".into()));
+        }
+        read += piece.len() as u64;
+        cloud.add(&piece);
+    }
+    Ok(cloud.finish(&header))
+}
+
+/// Offsets and lengths that the crate takes memory for, against the length of the file.
+fn check_head(file: &mut (impl Read + Seek), length: u64) -> Result<(), String> {
+    let mut head = [0; 104];
+    file.read_exact(&mut head).map_err(|_| format!("{length} bytes are too few for a LAS header"))?;
+    let u16_at = |at: usize| u64::from(u16::from_le_bytes([head[at], head[at + 1]]));
+    let u32_at = |at: usize| u64::from(u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
+    let (header_bytes, points_at, records) = (u16_at(94), u32_at(96), u32_at(100));
+    if header_bytes > points_at || points_at > length {
+        return Err(format!("points begin at byte {points_at} of {length}, after a header of {header_bytes}"));
+    }
+    if records.saturating_mul(RECORD_HEAD_BYTES) > points_at - header_bytes {
+        return Err(format!("{records} records cannot lie before the points, at byte {points_at}"));
+    }
+    Ok(())
+}
+
+fn check_count(header: &las::Header, length: u64) -> Result<(), String> {
+    let count = header.number_of_points();
+    let format = header.point_format();
+    let most = if format.is_compressed {
+        length.saturating_mul(MOST_POINTS_OF_A_BYTE).max(POINTS_OF_ANY_FILE)
+    } else {
+        length / u64::from(format.len().max(1))
+    };
+    if count > most {
+        return Err(format!("it says {count} points, of which at most {most} fit into the file's {length} bytes"));
+    }
+    let transforms = header.transforms();
+    // Coordinates are whole numbers of 32 bits, scaled and shifted.
+    let farthest = |t: las::Transform| t.scale.abs() * f64::from(u32::MAX) + t.offset.abs();
+    if ![transforms.x, transforms.y, transforms.z].into_iter().map(farthest).all(f64::is_finite) {
+        return Err("a scale or an offset is not a finite number, or beyond all numbers".into());
+    }
+    Ok(())
+}
+
+/// Gathers points, without the noise.
+struct Collector {
+    cloud: LasCloud,
+    colors: Vec<[u16; 3]>,
+    intensity: CloudField,
+    class: CloudField,
+    returns: [CloudField; 2],
+    source: CloudField,
+    time: CloudField,
+    infrared: CloudField,
+}
+
+/// Classes of noise: below, and above.
+const NOISE: [u8; 2] = [7, 18];
+
+impl Collector {
+    fn new(header: &las::Header) -> Collector {
+        let version = header.version();
+        let cloud = LasCloud {
+            version: (version.major, version.minor),
+            is_compressed: header.point_format().is_compressed,
+            is_copc: header.vlrs().iter().any(|record| record.is_copc_info()),
+            extra_bytes: header.point_format().extra_bytes.into(),
+            crs: crs(header),
+            ..LasCloud::default()
+        };
+        Collector {
+            cloud,
+            colors: Vec::new(),
+            intensity: CloudField::new("intensity", FieldKind::U16),
+            class: CloudField::new("classification", FieldKind::U8),
+            returns: ["return_number", "number_of_returns"].map(|name| CloudField::new(name, FieldKind::U8)),
+            source: CloudField::new("point_source_id", FieldKind::U16),
+            time: CloudField::new("gps_time", FieldKind::F64),
+            infrared: CloudField::new("near_infrared", FieldKind::U16),
+        }
+    }
+
+    fn add(&mut self, piece: &las::PointData) {
+        let is_extended = piece.format().is_extended;
+        let records = piece.raw_bytes().chunks_exact(piece.record_len());
+        // The flags of withheld points: bit 7 of the class before version 1.4, bit 2 of the flags after.
+        let withheld = records.map(|record| if is_extended { record[15] & 4 != 0 } else { record[15] & 0x80 != 0 });
+        let keep: Vec<bool> = piece
+            .classification()
+            .zip(withheld)
+            .map(|(class, withheld)| !withheld && !NOISE.contains(&class))
+            .collect();
+        self.cloud.noise += keep.iter().filter(|keep| !**keep).count();
+        let places = piece.x().zip(piece.y()).zip(piece.z()).map(|((x, y), z)| [x, y, z]);
+        self.cloud.positions.extend(kept(places, &keep));
+        if let Some(colors) = piece.rgb() {
+            self.colors.extend(kept(colors.map(|(r, g, b)| [r, g, b]), &keep));
+        }
+        let fill = |field: &mut CloudField, values: &mut dyn Iterator<Item = f64>| {
+            kept(values, &keep).for_each(|value| field.push(value));
+        };
+        fill(&mut self.intensity, &mut piece.intensity().map(f64::from));
+        fill(&mut self.class, &mut piece.classification().map(f64::from));
+        fill(&mut self.returns[0], &mut piece.return_number().map(f64::from));
+        fill(&mut self.returns[1], &mut piece.number_of_returns().map(f64::from));
+        fill(&mut self.source, &mut piece.point_source_id().map(f64::from));
+        if let Some(times) = piece.gps_time() {
+            fill(&mut self.time, &mut { times });
+        }
+        if let Some(infrared) = piece.nir() {
+            fill(&mut self.infrared, &mut infrared.map(f64::from));
+        }
+    }
+
+    fn finish(self, header: &las::Header) -> LasCloud {
+        let mut cloud = self.cloud;
+        // Sixteen bits, says the specification; many programs write eight.
+        let shift = if self.colors.iter().flatten().any(|v| *v > 255) { 8 } else { 0 };
+        cloud.colors = self.colors.iter().map(|color| color.map(|v| (v >> shift) as u8)).collect();
+        if header.point_format().has_color && cloud.colors.iter().all(|color| *color == [0; 3]) {
+            cloud.colors.clear();
+        }
+        let [first, second] = self.returns;
+        let fields = [self.intensity, self.class, first, second, self.source, self.time, self.infrared];
+        // Columns of zeros say nothing.
+        cloud.fields = fields.into_iter().filter(|field| field.bytes.iter().any(|byte| *byte != 0)).collect();
+        cloud
+    }
+}
+
+fn kept<T>(values: impl Iterator<Item = T>, keep: &[bool]) -> impl Iterator<Item = T> {
+    values.zip(keep).filter(|(_, keep)| **keep).map(|(value, _)| value)
+}
+
+/// Keys of GeoTIFF (OGC 19-008), and the codes of units that clouds come in.
+const GEOGRAPHIC_KEY: u16 = 2048;
+const PROJECTED_KEY: u16 = 3072;
+const UNIT_KEY: u16 = 3076;
+const VERTICAL_UNIT_KEY: u16 = 4099;
+const USER_DEFINED: u16 = 32767;
+const UNITS: [(u16, &str, f64); 3] =
+    [(9001, "metre", 1.0), (9002, "foot", 0.3048), (9003, "US survey foot", 1200.0 / 3937.0)];
+
+fn crs(header: &las::Header) -> Option<LasCrs> {
+    let wkt =
+        header.get_wkt_crs_bytes().map(|bytes| String::from_utf8_lossy(bytes).trim_matches(['\0', ' ']).to_owned());
+    if let Some(text) = wkt.filter(|text| !text.is_empty()) {
+        return Some(LasCrs { understood: wkt_crs(&text), text });
+    }
+    let keys = header.get_geotiff_crs().ok()??.entries;
+    let number = |id: u16| {
+        keys.iter().find(|key| key.id == id).and_then(|key| match key.data {
+            GeoTiffData::U16(value) if value != 0 && value != USER_DEFINED => Some(value),
+            _ => None,
+        })
+    };
+    let unit = |id: u16| {
+        let (_, name, metres) = *UNITS.iter().find(|(code, _, _)| Some(*code) == number(id))?;
+        Some(WktUnit { name: name.into(), metres })
+    };
+    let (projected, geographic) = (number(PROJECTED_KEY), number(GEOGRAPHIC_KEY));
+    let understood = WktCrs {
+        epsg: projected.or(geographic).map(u32::from),
+        is_geographic: projected.is_none() && geographic.is_some() && unit(UNIT_KEY).is_none(),
+        horizontal: unit(UNIT_KEY),
+        vertical: unit(VERTICAL_UNIT_KEY),
+    };
+    let text = match understood.epsg {
+        Some(code) => format!("EPSG:{code}"),
+        None => keys.iter().find_map(|key| match &key.data {
+            GeoTiffData::String(text) => Some(text.trim_end_matches(['|', '\0']).to_owned()),
+            _ => None,
+        })?,
+    };
+    Some(LasCrs { text, understood })
+}
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@
 //! city files ──► read_city ──► CityModel ──► PreparedCity ──┐
 //! COLMAP, PLY ─► read_reconstruction ──► Reconstruction ────┤
 //! labels, photographs ─► lift_superpixels ──────────────────┼─► align ──► Alignment ──► write_alignment
-//! a coarse pose ─► read_start ──► Start ──► AlignOptions ───┘
+//! a coarse pose ─► read_start ──► Start ──► AlignOptions ───┘   (positions, control points ─► Estimate ─► Start)
 //!
 //! reconstructions (and starts in a city) ──► MergePart ──► merge ──► Merge ──► write_merge
 //! ```
@@ -15,6 +15,7 @@
 //! | know how sure it is | [`Verdict`], [`Certainty`], [`Freedom`], [`Alternative`], [`types::ModelErrors`] |
 //! | read a city model | [`read_city`], [`CityOptions`], [`CityModel`], [`PreparedCity`] |
 //! | read a reconstruction and a start | [`read_reconstruction`], [`Reconstruction`], [`read_start`], [`Start`] |
+//! | get a start from positions or control points | [`read_positions`], [`from_positions`], [`read_control_points`], [`from_control_points`], [`agreed`]; what comes back: [`Estimate`] |
 //! | use label images or photographs | [`lift_superpixels`], [`SuperpixelSource`], [`SuperpixelOptions`] |
 //! | join reconstructions | [`merge()`], [`MergePart`], [`MergeOptions`]; with places known already [`steps::join`]; what comes back: [`Merge`] |
 //! | write results | [`write_alignment`], [`write_merge`], [`write_colmap`], [`write_ply`], [`output`] |
@@ -39,6 +40,7 @@ pub mod solvers;
 pub mod problem;
 mod robust;
 mod planes;
+mod georeference;
 mod correspondence;
 mod evidence;
 mod uncertainty;
@@ -63,8 +65,11 @@ pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
 // City, reconstruction, start.
 pub use city::{CityModel, CityOptions, CityUp, Facet, read_city};
+pub use format::control::read_control_points;
+pub use format::positions::read_positions;
 pub use format::read_start;
 pub use geometry::{Start, StartSigmas};
+pub use georeference::{Estimate, agreed, from_control_points, from_positions};
 pub use planes::PreparedCity;
 pub use reconstruction::{Image, Observation, Reconstruction, read_reconstruction};
 
@@ -88,7 +93,10 @@ pub mod types {
     pub use crate::city::{CityDefect, CityError, CityPlace, CityRole, CitySource, CityWarning, FacetId, ObjectId};
     pub use crate::export::{ExportError, OutputError, ReportError};
     pub use crate::format::PlacementError;
+    pub use crate::format::control::{ControlFile, PointRole, PointSight, StoredPoint};
+    pub use crate::format::positions::{Frame, PositionsError, PositionsFile, StoredPosition};
     pub use crate::geometry::{Camera, CameraModel, StartError};
+    pub use crate::georeference::{ControlPoint, ControlUse, GeoreferenceError};
     pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};
     pub use crate::merging::{
         Account, Anchor, DropReason, Edge, EdgeSource, Fused, Ledger, MergeError, MergedFrame, PartPlace, PartSupport,

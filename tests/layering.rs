@@ -17,6 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("problem", &["geometry", "format", "solvers"]),
     ("robust", &["geometry", "solvers"]),
     ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
+    ("georeference", &["limits", "geometry", "format", "city", "reconstruction", "robust", "planes"]),
     ("correspondence", &["limits", "observer", "geometry", "city", "planes", "solvers", "robust"]),
     ("evidence", &["limits", "geometry", "planes", "correspondence"]),
     ("uncertainty", &["limits", "geometry", "city", "planes", "correspondence", "robust"]),
@@ -36,7 +37,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "verdict",
         ],
     ),
-    ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict", "merging"]),
+    ("export", &["geometry", "format", "city", "reconstruction", "planes", "georeference", "verdict", "merging"]),
     (
         "align",
         &[
@@ -55,7 +56,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("merge", &["limits", "observer", "geometry", "imagery", "reconstruction", "planes", "merging", "align"]),
-    ("error", &["observer", "geometry", "format", "city", "reconstruction", "imagery", "merging", "export"]),
+    (
+        "error",
+        &["observer", "geometry", "format", "city", "reconstruction", "imagery", "georeference", "merging", "export"],
+    ),
     // Parses, reads, writes and prints: it neither searches nor estimates.
     (
         "cli",
@@ -70,6 +74,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "solvers",
             "problem",
             "planes",
+            "georeference",
             "verdict",
             "merging",
             "export",

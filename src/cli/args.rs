@@ -99,11 +99,25 @@ pub struct AlignArgs {
     /// Reconstruction: a folder with a COLMAP model (binary or text), or a PLY cloud
     pub sfm: PathBuf,
     /// Folder to make; must not exist (see --force)
-    #[arg(short, long, value_name = "OUT")]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
+    pub output: Option<PathBuf>,
     /// Coarse place of the reconstruction, JSON (see below), or the alignment.json of an earlier run
     #[arg(long, value_name = "FILE")]
     pub start: Option<PathBuf>,
+    /// Where the photographs were taken: a folder of photographs (EXIF GPS), database.db of COLMAP, reconstruction.json of OpenSfM, geo.txt
+    /// of ODM, a table with a header (Metashape, RealityScan), or lines of name, X, Y, Z [default: --photos, where nothing else is given]
+    #[arg(long, value_name = "SOURCE")]
+    pub positions: Option<PathBuf>,
+    /// Control points: lines x y z X Y Z [sigma [name]] (reconstruction, then city), or gcp_list.txt of ODM; the word check at the end of
+    /// a line keeps its point out and has its residual reported
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Coordinate system of the city, EPSG code: needed where positions are longitudes and latitudes
+    #[arg(long, value_name = "EPSG:CODE")]
+    pub crs: Option<CrsArg>,
+    /// Read and check everything, tell the start and its distance from the city, write nothing
+    #[arg(long)]
+    pub dry_run: bool,
     /// Further meshes in the same frame as CITY, such as ground; may be given several times
     #[arg(long, value_name = "FILE")]
     pub terrain: Vec<PathBuf>,
@@ -282,6 +296,28 @@ impl FromStr for UpArg {
                 [x, y, z] => Ok(UpArg::Given([x, y, z])),
                 _ => Err("expected auto, none, or three numbers X,Y,Z".into()),
             },
+        }
+    }
+}
+
+/// `--crs`: EPSG codes of the horizontal system and, after a plus, of the heights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrsArg {
+    pub horizontal: u32,
+    pub vertical: Option<u32>,
+}
+
+impl FromStr for CrsArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<CrsArg, String> {
+        let expected = "expected EPSG:<code>, such as EPSG:28992, or EPSG:<code>+<code of the heights>";
+        let text = text.trim();
+        let codes = text.get(..5).filter(|start| start.eq_ignore_ascii_case("epsg:")).map_or(text, |_| &text[5..]);
+        let code = |text: &str| text.trim().parse::<u32>().map_err(|_| expected.to_owned());
+        match codes.split_once('+') {
+            None => Ok(CrsArg { horizontal: code(codes)?, vertical: None }),
+            Some((first, second)) => Ok(CrsArg { horizontal: code(first)?, vertical: Some(code(second)?) }),
         }
     }
 }

@@ -6,6 +6,7 @@ mod demo;
 mod export;
 mod interrupt;
 mod merge;
+mod place;
 mod plan;
 mod planes;
 mod print;

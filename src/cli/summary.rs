@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::city::CityModel;
 use crate::export::PlaneAttitude;
 use crate::format::escaped;
+use crate::georeference::Estimate;
 use crate::merging::{Account, Merge};
 use crate::planes::CityPlanes;
 use crate::verdict::{Alignment, Freedom, FreedomUnit, Verdict};
@@ -66,6 +67,20 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
         table.row(name, format!("{} (weight {:.3})", other.differs, other.weight));
     }
     table.row("written", format!("{} ({})", output.display(), files.join(", ")));
+    table.row("time", format!("{seconds:.1} s"));
+    table.text
+}
+
+/// Where the search would begin.
+pub fn of_start(estimate: &Estimate, seconds: f64) -> String {
+    let mut table = Table::new(&format!("start: {}", estimate.source), 13);
+    let (pose, sigmas) = (estimate.start.city_from_sfm(), estimate.start.sigmas());
+    let middle = pose.apply(&estimate.middle);
+    table.row("middle", format!("{:.2}, {:.2}, {:.2} m", middle.x, middle.y, middle.z));
+    table.row("position", format!("sigma {:.2} m horizontally, {:.2} m of height", sigmas.position_m, sigmas.height_m));
+    let [heading, tilt] = [sigmas.heading_rad, sigmas.tilt_rad].map(f64::to_degrees);
+    table.row("rotation", format!("sigma {heading:.1} deg of heading, {tilt:.1} deg of tilt"));
+    table.row("scale", format!("{:.6} m per reconstruction unit, sigma {:.1} %", pose.scale, 100.0 * sigmas.log_scale));
     table.row("time", format!("{seconds:.1} s"));
     table.text
 }

@@ -3,8 +3,11 @@
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
+use super::prior::PriorJson;
+use super::similarity::SimilarityJson;
 use crate::city::CityModel;
 use crate::geometry::Similarity;
+use crate::georeference::Estimate;
 use crate::reconstruction::Reconstruction;
 use crate::verdict::{Alignment, Certainty, Freedom, ModelErrors, PlaneSupport, Support, Verdict};
 
@@ -15,6 +18,9 @@ const SCHEMA: &str = "cityweld.alignment/1";
 pub struct InputSummary {
     pub city: CityCounts,
     pub sfm: SfmCounts,
+    /// The start that was used; it stands under `prior`.
+    #[serde(skip)]
+    pub prior: Option<Estimate>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -71,6 +77,7 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         Verdict::Aligned => (best, None),
         _ => (None, best),
     };
+    let prior = input.prior.as_ref().map(PriorJson::of).transpose()?;
     let report = AlignmentJson {
         schema: SCHEMA,
         verdict: alignment.verdict.word(),
@@ -94,6 +101,7 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         freedoms: alignment.freedoms.iter().map(freedom_json).collect::<Result<_, _>>()?,
         covariance: alignment.covariance.iter().map(to_raw_value).collect::<Result<_, _>>()?,
         support: SupportJson::of(&alignment.support),
+        prior,
         evidence: alignment.evidence.iter().map(evidence_json).collect::<Result<_, _>>()?,
         search: SearchJson {
             solver: &alignment.search.solver,
@@ -105,6 +113,11 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         program: concat!("cityweld ", env!("CARGO_PKG_VERSION")),
     };
     Ok(serde_json::to_string_pretty(&report)? + "\n")
+}
+
+/// The start alone, as `align --dry-run --json` tells it.
+pub fn start_report(estimate: &Estimate) -> Result<String, ReportError> {
+    Ok(serde_json::to_string_pretty(&PriorJson::of(estimate)?)? + "\n")
 }
 
 #[derive(Serialize)]
@@ -126,30 +139,12 @@ struct AlignmentJson<'a> {
     freedoms: Vec<Box<RawValue>>,
     covariance: Vec<Box<RawValue>>,
     support: SupportJson,
+    prior: Option<PriorJson<'a>>,
     evidence: Vec<Box<RawValue>>,
     search: SearchJson<'a>,
     warnings: &'a [String],
     input: &'a InputSummary,
     program: &'static str,
-}
-
-#[derive(Serialize)]
-pub(super) struct SimilarityJson {
-    scale: f64,
-    rotation: Vec<Box<RawValue>>,
-    translation: Box<RawValue>,
-}
-
-impl SimilarityJson {
-    pub(super) fn of(similarity: &Similarity) -> Result<SimilarityJson, serde_json::Error> {
-        let r = similarity.rotation.matrix();
-        let rows = (0..3).map(|i| to_raw_value(&[r[(i, 0)], r[(i, 1)], r[(i, 2)]]));
-        Ok(SimilarityJson {
-            scale: similarity.scale,
-            rotation: rows.collect::<Result<_, _>>()?,
-            translation: to_raw_value(&similarity.translation.as_slice())?,
-        })
-    }
 }
 
 #[derive(Serialize)]

@@ -2,12 +2,14 @@
 
 mod alignment;
 pub mod colmap;
+pub mod control;
 pub mod file;
 mod escape;
 pub mod gltf;
 mod kind;
 pub mod obj;
 mod placement;
+pub mod positions;
 mod problem;
 pub mod ply;
 mod ply_row;

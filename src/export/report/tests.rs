@@ -41,6 +41,7 @@ fn input() -> InputSummary {
     InputSummary {
         city: CityCounts::of(&CityModel::default(), vec!["city.obj".into()]),
         sfm: SfmCounts::of(&Reconstruction::default(), "sfm".into(), None),
+        prior: None,
     }
 }
 

@@ -33,7 +33,6 @@ mod test_scene;
 mod track_evidence;
 mod track_fit;
 mod track_testimony;
-mod umeyama;
 mod whole_planes;
 
 pub(super) use fault::PairFault;

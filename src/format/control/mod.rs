@@ -1,0 +1,7 @@
+//! Control points as programs write them: records alone, in the frame of the file.
+
+mod read;
+mod record;
+
+pub use read::read_control_points;
+pub use record::{ControlFile, PointRole, PointSight, StoredPoint};

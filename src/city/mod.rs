@@ -4,6 +4,7 @@
 //! and counted in [`CityModel::warnings`]; what leaves no honest model is a [`CityError`].
 
 mod build;
+mod distance;
 mod facet;
 mod join;
 mod model;

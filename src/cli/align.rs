@@ -55,6 +55,8 @@ struct Inputs {
     sfm: Reconstruction,
     superpixels: Option<LiftedSuperpixels>,
     estimate: Estimate,
+    /// From the start to the nearest facet, metres.
+    distance_m: f64,
 }
 
 /// What `--dry-run` tells.
@@ -62,9 +64,9 @@ fn tell_start(inputs: &Inputs, plan: &AlignPlan, session: &Session) -> Result<Ou
     let voice = &session.voice;
     voice.warnings(&inputs.warnings(plan));
     if session.common.json {
-        voice.json(&start_report(&inputs.estimate)?, None)?;
+        voice.json(&start_report(&inputs.estimate, inputs.distance_m)?, None)?;
     } else {
-        voice.result(&summary::of_start(&inputs.estimate, voice.seconds()), None)?;
+        voice.result(&summary::of_start(&inputs.estimate, inputs.distance_m, voice.seconds()), None)?;
     }
     Ok(Outcome::Good)
 }
@@ -79,7 +81,8 @@ impl Inputs {
         let sfm = read_reconstruction(&plan.sfm)?;
         voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
         let estimate = plan.place.estimate(&sfm, &city)?;
-        voice.detail(&format!("start: {}", estimate.source));
+        let distance_m = estimate.distance_to_city(&sfm.points, &city)?;
+        voice.detail(&format!("start: {}; {distance_m:.1} m from the nearest facet", estimate.source));
         let superpixels = match &plan.superpixels {
             None => None,
             Some(source) => {
@@ -88,7 +91,7 @@ impl Inputs {
                 Some(lifted)
             }
         };
-        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, estimate })
+        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, estimate, distance_m })
     }
 
     /// What was tolerated while reading, once each.

@@ -72,11 +72,12 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
 }
 
 /// Where the search would begin.
-pub fn of_start(estimate: &Estimate, seconds: f64) -> String {
+pub fn of_start(estimate: &Estimate, distance_m: f64, seconds: f64) -> String {
     let mut table = Table::new(&format!("start: {}", estimate.source), 13);
     let (pose, sigmas) = (estimate.start.city_from_sfm(), estimate.start.sigmas());
     let middle = pose.apply(&estimate.middle);
     table.row("middle", format!("{:.2}, {:.2}, {:.2} m", middle.x, middle.y, middle.z));
+    table.row("distance", format!("{distance_m:.1} m from the city's nearest facet"));
     table.row("position", format!("sigma {:.2} m horizontally, {:.2} m of height", sigmas.position_m, sigmas.height_m));
     let [heading, tilt] = [sigmas.heading_rad, sigmas.tilt_rad].map(f64::to_degrees);
     table.row("rotation", format!("sigma {heading:.1} deg of heading, {tilt:.1} deg of tilt"));

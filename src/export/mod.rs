@@ -14,6 +14,7 @@ mod planes;
 pub mod ply;
 mod prior;
 mod report;
+mod report_input;
 mod similarity;
 mod work;
 
@@ -24,4 +25,5 @@ pub use merge_report::{merge_report, write_merge};
 pub use output::{Discard, Output, OutputKind, Replace};
 pub use output_error::OutputError;
 pub use planes::{PlaneAttitude, planes_report, write_planes_glb};
-pub use report::{CityCounts, InputSummary, ReportError, SfmCounts, alignment_report, start_report};
+pub use report::{ReportError, alignment_report, start_report};
+pub use report_input::{CityCounts, InputSummary, SfmCounts};

@@ -2,8 +2,12 @@
 
 use serde::Serialize;
 
+use serde_json::value::{RawValue, to_raw_value};
+
+use super::report_input::InputSummary;
 use super::similarity::SimilarityJson;
-use crate::georeference::Estimate;
+use crate::georeference::{ControlUse, Estimate};
+use crate::verdict::Alignment;
 
 /// With the keys of a start file, so that it can be used as one.
 #[derive(Serialize)]
@@ -34,4 +38,45 @@ impl PriorJson<'_> {
             middle: pose.apply(&estimate.middle).into(),
         })
     }
+}
+
+/// A control or check point, and how far the result puts it from where it was measured.
+#[derive(Serialize)]
+struct PointJson<'a> {
+    name: &'a str,
+    /// `control`, `check`, or `left out` where the others contradict it.
+    role: &'a str,
+    sfm: [f64; 3],
+    city: [f64; 3],
+    /// Measured less found, metres: east, north, up; `null` where nothing was found.
+    residual: Option<[f64; 3]>,
+    distance: Option<f64>,
+    sigma: f64,
+}
+
+/// The points of the start that were used so, a line each.
+pub(super) fn residuals(
+    alignment: &Alignment,
+    input: &InputSummary,
+    is_wanted: impl Fn(ControlUse) -> bool,
+) -> Result<Vec<Box<RawValue>>, serde_json::Error> {
+    let points = input.prior.iter().flat_map(|prior| &prior.points).filter(|point| is_wanted(point.use_of));
+    points
+        .map(|point| {
+            let residual = alignment.best_candidate.map(|pose| point.in_city - pose.apply(&point.in_sfm));
+            to_raw_value(&PointJson {
+                name: &point.name,
+                role: match point.use_of {
+                    ControlUse::Control => "control",
+                    ControlUse::Check => "check",
+                    ControlUse::LeftOut => "left out",
+                },
+                sfm: point.in_sfm.into(),
+                city: point.in_city.into(),
+                residual: residual.map(Into::into),
+                distance: residual.map(|r| r.norm()),
+                sigma: point.sigma_m,
+            })
+        })
+        .collect()
 }

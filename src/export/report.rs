@@ -3,61 +3,14 @@
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
-use super::prior::PriorJson;
+use super::prior::{PriorJson, residuals};
+use super::report_input::InputSummary;
 use super::similarity::SimilarityJson;
-use crate::city::CityModel;
 use crate::geometry::Similarity;
-use crate::georeference::Estimate;
-use crate::reconstruction::Reconstruction;
+use crate::georeference::{ControlUse, Estimate};
 use crate::verdict::{Alignment, Certainty, Freedom, ModelErrors, PlaneSupport, Support, Verdict};
 
 const SCHEMA: &str = "cityweld.alignment/1";
-
-/// What went in, for the record. Files by their names alone, so that a moved data set gives the same report.
-#[derive(Clone, Debug, Serialize)]
-pub struct InputSummary {
-    pub city: CityCounts,
-    pub sfm: SfmCounts,
-    /// The start that was used; it stands under `prior`.
-    #[serde(skip)]
-    pub prior: Option<Estimate>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub struct CityCounts {
-    pub files: Vec<String>,
-    pub objects: usize,
-    pub facets: usize,
-    pub triangles: usize,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub struct SfmCounts {
-    pub file: String,
-    pub images: usize,
-    pub points: usize,
-    pub observations: usize,
-    /// Those of labels or photographs that points fall on; `None` where neither was given.
-    pub superpixels: Option<usize>,
-}
-
-impl CityCounts {
-    pub fn of(city: &CityModel, files: Vec<String>) -> CityCounts {
-        CityCounts { files, objects: city.objects.len(), facets: city.facets.len(), triangles: city.triangles.len() }
-    }
-}
-
-impl SfmCounts {
-    pub fn of(sfm: &Reconstruction, file: String, superpixels: Option<usize>) -> SfmCounts {
-        SfmCounts {
-            file,
-            images: sfm.images.len(),
-            points: sfm.points.len(),
-            observations: sfm.track_elements.len(),
-            superpixels,
-        }
-    }
-}
 
 /// Why a result cannot be reported.
 #[derive(Debug, thiserror::Error)]
@@ -102,6 +55,8 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         covariance: alignment.covariance.iter().map(to_raw_value).collect::<Result<_, _>>()?,
         support: SupportJson::of(&alignment.support),
         prior,
+        control_points: residuals(alignment, input, |use_of| use_of != ControlUse::Check)?,
+        check_points: residuals(alignment, input, |use_of| use_of == ControlUse::Check)?,
         evidence: alignment.evidence.iter().map(evidence_json).collect::<Result<_, _>>()?,
         search: SearchJson {
             solver: &alignment.search.solver,
@@ -116,8 +71,17 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
 }
 
 /// The start alone, as `align --dry-run --json` tells it.
-pub fn start_report(estimate: &Estimate) -> Result<String, ReportError> {
-    Ok(serde_json::to_string_pretty(&PriorJson::of(estimate)?)? + "\n")
+pub fn start_report(estimate: &Estimate, distance_m: f64) -> Result<String, ReportError> {
+    #[derive(Serialize)]
+    struct StartJson<'a> {
+        #[serde(flatten)]
+        prior: PriorJson<'a>,
+        /// From the middle to the city's nearest facet, metres.
+        distance: f64,
+        warnings: &'a [String],
+    }
+    let report = StartJson { prior: PriorJson::of(estimate)?, distance: distance_m, warnings: &estimate.warnings };
+    Ok(serde_json::to_string_pretty(&report)? + "\n")
 }
 
 #[derive(Serialize)]
@@ -140,6 +104,8 @@ struct AlignmentJson<'a> {
     covariance: Vec<Box<RawValue>>,
     support: SupportJson,
     prior: Option<PriorJson<'a>>,
+    control_points: Vec<Box<RawValue>>,
+    check_points: Vec<Box<RawValue>>,
     evidence: Vec<Box<RawValue>>,
     search: SearchJson<'a>,
     warnings: &'a [String],

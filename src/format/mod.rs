@@ -7,6 +7,7 @@ pub mod file;
 mod escape;
 pub mod gltf;
 mod kind;
+mod matrix;
 pub mod obj;
 mod placement;
 pub mod positions;

@@ -1,6 +1,6 @@
 //! Why a source does not say where a reconstruction stands.
 
-use crate::geometry::StartError;
+use crate::geometry::{Point3, StartError};
 
 /// Why positions or control points place nothing. `source` names the file.
 #[derive(Debug, thiserror::Error)]
@@ -41,7 +41,29 @@ pub enum GeoreferenceError {
     TooFewPoints { found: usize, left_out: String, source_name: String },
     #[error("{source_name}: {error}")]
     Start { source_name: String, error: StartError },
+    #[error(
+        "the start is {} from the city's nearest facet (its place: {}; the city: {} to {}), and its sigmas reach {}; check that the coordinates \
+         are of the city's system (--crs), in metres, and east before north: {source_name}",
+        length(*distance_m), place_of(place), place_of(low), place_of(high), length(*reach_m)
+    )]
+    FarFromTheCity {
+        distance_m: f64,
+        reach_m: f64,
+        place: Point3<f64>,
+        low: Point3<f64>,
+        high: Point3<f64>,
+        source_name: String,
+    },
     /// Two sources that cannot both be right.
     #[error("{first} and {second} do not agree: {differs}; leave out the one that is wrong")]
     Disagreement { first: String, second: String, differs: String },
+}
+
+/// Metres, and kilometres from one on.
+fn length(metres: f64) -> String {
+    if metres < 1000.0 { format!("{metres:.0} m") } else { format!("{:.1} km", metres / 1000.0) }
+}
+
+fn place_of(p: &Point3<f64>) -> String {
+    format!("{:.0}, {:.0}, {:.0}", p.x, p.y, p.z)
 }

@@ -17,6 +17,7 @@ mod point_fit;
 mod positions;
 mod projection;
 mod rays;
+mod reach;
 
 pub use agree::agreed;
 pub use control::from_control_points;

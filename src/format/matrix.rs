@@ -20,7 +20,7 @@ pub(super) fn looks_like_matrix(text: &str) -> bool {
 pub(super) fn parse_matrix(text: &str, path: &Path) -> Result<Similarity, PlacementError> {
     let fault = |found: String| PlacementError::Matrix { path: path.into(), found };
     let words = numbers(text);
-    let mut m = [0.0; 16];
+    let mut m = [0f64; 16];
     if words.len() != m.len() {
         return Err(fault(format!("{} numbers", words.len())));
     }

@@ -36,7 +36,7 @@ pub fn from_control_points(
     city_frame: Option<&Frame>,
 ) -> Result<Estimate, GeoreferenceError> {
     let to_city = ToCity::new(&file.frame, city_frame, source_name)?;
-    let (mut points, unseen) = located(file, source_name, sfm, city, &to_city)?;
+    let Located { mut points, unseen, notes } = located(file, source_name, sfm, city, &to_city)?;
     let used: Vec<usize> = (0..points.len()).filter(|&i| points[i].use_of == ControlUse::Control).collect();
     let too_few = || GeoreferenceError::TooFewPoints {
         found: used.len(),
@@ -66,6 +66,7 @@ pub fn from_control_points(
         fit.rms_m
     );
     let mut warnings: Vec<String> = unseen.iter().map(|why| format!("control point left out: {why}")).collect();
+    warnings.extend(notes);
     warnings.extend(wrong.iter().map(|&i| {
         let point = &points[i];
         let distance = (pose.apply(&point.in_sfm) - point.in_city).norm();
@@ -80,27 +81,40 @@ fn sigmas(fit: &PointFit, has_foreign_heights: bool) -> StartSigmas {
     StartSigmas { height_m, ..*s }
 }
 
-/// Points with both places, city's local frame; and why others have none.
+/// What is known of the points of a file.
+struct Located {
+    /// With both places, city's local frame.
+    points: Vec<ControlPoint>,
+    /// Why others have none.
+    unseen: Vec<String>,
+    /// What was left out of the points that are used.
+    notes: Vec<String>,
+}
+
+/// Finds the points in both frames.
 fn located(
     file: &ControlFile,
     source_name: &str,
     sfm: &Reconstruction,
     city: &CityModel,
     to_city: &ToCity,
-) -> Result<(Vec<ControlPoint>, Vec<String>), GeoreferenceError> {
+) -> Result<Located, GeoreferenceError> {
     let names = PhotographNames::new(&sfm.images);
-    let (mut points, mut unseen) = (Vec::new(), Vec::new());
+    let (mut points, mut unseen, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     for stored in &file.points {
         let place = to_city.place(stored.east_north, Some(stored.height_m))?;
         let [east, north] = place.east_north;
         let in_city = Point3::new(east, north, place.height_m.unwrap_or(stored.height_m)) - city.origin;
         match in_sfm(stored, source_name, sfm, &names)? {
-            Ok((in_sfm, sigma)) => points.push(Sighted { stored, in_city, in_sfm, sigma }),
+            Ok((in_sfm, sigma, note)) => {
+                points.push(Sighted { stored, in_city, in_sfm, sigma });
+                notes.extend(note);
+            }
             Err(why) => unseen.push(why),
         }
     }
     let scale = rough_scale(&points);
-    Ok((points.iter().map(|point| point.told(scale)).collect(), unseen))
+    Ok(Located { points: points.iter().map(|point| point.told(scale)).collect(), unseen, notes })
 }
 
 /// A point with its places in both frames; the sigma of that in the sfm frame in sfm units.
@@ -137,8 +151,8 @@ fn rough_scale(points: &[Sighted]) -> f64 {
     if scale.is_finite() { scale } else { 0.0 }
 }
 
-/// The place in the sfm frame and its sigma, or why there is none.
-type InSfm = Result<(Point3<f64>, f64), String>;
+/// The place in the sfm frame, its sigma and what was left out of it; or why there is none.
+type InSfm = Result<(Point3<f64>, f64, Option<String>), String>;
 
 fn in_sfm(
     point: &StoredPoint,
@@ -147,7 +161,7 @@ fn in_sfm(
     names: &PhotographNames,
 ) -> Result<InSfm, GeoreferenceError> {
     let sights = match &point.sight {
-        PointSight::At(place) => return Ok(Ok((Point3::from(*place), 0.0))),
+        PointSight::At(place) => return Ok(Ok((Point3::from(*place), 0.0, None))),
         PointSight::In(sights) => sights,
     };
     let mut rays = Vec::new();
@@ -159,6 +173,9 @@ fn in_sfm(
     if rays.len() < 2 {
         return Ok(Err(format!("{name} is seen in {} photographs of the reconstruction", rays.len())));
     }
-    let met = intersection(&rays).map(|found| (found.point, found.sigma));
-    Ok(met.ok_or_else(|| format!("the {} rays of {name} do not meet", rays.len())))
+    let Some(met) = intersection(&rays) else {
+        return Ok(Err(format!("the {} rays of {name} do not meet", rays.len())));
+    };
+    let left_out = format!("{} of {} sights of {name} are of another place, left out", met.left_out, rays.len());
+    Ok(Ok((met.point, met.sigma, Some(left_out).filter(|_| met.left_out > 0))))
 }

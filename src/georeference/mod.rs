@@ -18,6 +18,8 @@ mod positions;
 mod projection;
 mod rays;
 mod reach;
+#[cfg(test)]
+mod tests;
 
 pub use agree::agreed;
 pub use control::from_control_points;

@@ -24,6 +24,8 @@ pub(super) struct Intersection {
     pub point: Point3<f64>,
     /// One sigma along the worst direction, sfm units.
     pub sigma: f64,
+    /// Sights that were left out.
+    pub left_out: usize,
 }
 
 /// A pixel that somebody clicked, and a camera that is not quite where it was, pixels. Chosen.
@@ -61,7 +63,7 @@ pub(super) fn intersection(rays: &[Sightline]) -> Option<Intersection> {
         let worst =
             (0..believed.len()).max_by(|&a, &b| believed[a].miss_px(&point).total_cmp(&believed[b].miss_px(&point)))?;
         if believed[worst].miss_px(&point) <= LARGEST_MISS_PX {
-            return Some(Intersection { point, sigma });
+            return Some(Intersection { point, sigma, left_out: rays.len() - believed.len() });
         }
         // One wrong ray pulls the point away from all: the one without which the others fit best goes.
         let without = |skip: usize| -> Vec<Sightline> {

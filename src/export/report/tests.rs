@@ -1,5 +1,8 @@
+use super::super::report_input::{CityCounts, SfmCounts};
 use super::*;
+use crate::city::CityModel;
 use crate::geometry::{Point3, Rotation3, Vector3};
+use crate::reconstruction::Reconstruction;
 use crate::verdict::{Alternative, FreedomKind, FreedomUnit, SearchSummary};
 use serde_json::{Value, json};
 

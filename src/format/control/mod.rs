@@ -2,6 +2,8 @@
 
 mod read;
 mod record;
+#[cfg(test)]
+mod tests;
 
 pub use read::read_control_points;
 pub use record::{ControlFile, PointRole, PointSight, StoredPoint};

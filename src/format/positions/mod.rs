@@ -13,6 +13,8 @@ mod opensfm;
 mod read;
 mod record;
 mod table;
+#[cfg(test)]
+mod tests;
 
 pub use error::PositionsError;
 pub(in crate::format) use frame::frame_of_line;

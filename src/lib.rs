@@ -20,6 +20,7 @@
 //! | join reconstructions | [`merge()`], [`MergePart`], [`MergeOptions`]; with places known already [`steps::join`]; what comes back: [`Merge`] |
 //! | write results | [`write_alignment`], [`write_merge`], [`write_colmap`], [`write_ply`], [`output`] |
 //! | follow long work, or end it | [`Observer`], [`Stage`], [`Cancelled`] |
+//! | see what is in any input | [`inspect()`], [`Inspection`] |
 //! | hold every error in one type | [`Error`] |
 //! | solve point-to-plane problems of one's own | [`solvers`] |
 //! | answer the `solve` command's JSON | [`problem`] |
@@ -52,6 +53,7 @@ pub mod synthetic;
 mod align;
 mod merge;
 mod error;
+mod inspect;
 
 #[cfg(feature = "cli")]
 #[doc(hidden)]
@@ -60,6 +62,7 @@ pub mod cli;
 // Alignment.
 pub use align::{AlignOptions, Up, align};
 pub use error::Error;
+pub use inspect::{InputKind, InspectedCrs, Inspection, inspect};
 pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 

@@ -60,6 +60,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "error",
         &["observer", "geometry", "format", "city", "reconstruction", "imagery", "georeference", "merging", "export"],
     ),
+    ("inspect", &["limits", "geometry", "format", "city", "reconstruction", "planes", "error"]),
     // Parses, reads, writes and prints: it neither searches nor estimates.
     (
         "cli",
@@ -80,6 +81,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "export",
             "align",
             "merge",
+            "inspect",
         ],
     ),
     // For tests, examples and benchmarks: no room may import it.

@@ -3,14 +3,25 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
 use clap::{Parser, Subcommand, ValueEnum};
+
+/// The version, the commit where whoever built it named one in CITYWELD_COMMIT (a package has no repository to ask), and the features.
+static VERSION: LazyLock<String> = LazyLock::new(|| {
+    let commit = option_env!("CITYWELD_COMMIT").filter(|commit| !commit.is_empty());
+    let commit = commit.map_or(String::new(), |commit| format!("commit {commit}, "));
+    format!("{} ({commit}features: {})", env!("CARGO_PKG_VERSION"), FEATURES.join(", "))
+});
+
+/// The cargo features that this program was built with.
+const FEATURES: [&str; 1] = ["cli"];
 
 /// Sets structure-from-motion reconstructions into polyhedral city models.
 #[derive(Parser, Debug)]
 #[command(
     name = "cityweld",
-    version,
+    version = VERSION.as_str(),
     propagate_version = true,
     subcommand_required = true,
     arg_required_else_help = true,
@@ -33,9 +44,12 @@ pub enum Command {
     Align(AlignArgs),
     Merge(MergeArgs),
     Planes(PlanesArgs),
+    Inspect(InspectArgs),
     Export(ExportArgs),
     Demo(DemoArgs),
     Solve(SolveArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 /// What every command takes.
@@ -203,6 +217,38 @@ pub struct PlanesArgs {
     /// Axis that is up in OBJ files
     #[arg(long, value_name = "AXIS", value_enum, default_value_t = CityUpArg::Z)]
     pub city_up: CityUpArg,
+}
+
+/// Show what the program sees in any input: a city, a reconstruction, photographs, positions, control points
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  cityweld inspect city.obj sfm/ photos/ geo.txt gcp_list.txt --json\n\n\
+    With --json: an array with one object for each path.\n\n\
+    Exit status: 0 all are told; 2 one cannot be read.")]
+pub struct InspectArgs {
+    /// Files and folders
+    #[arg(value_name = "PATH", num_args = 1.., required = true)]
+    pub paths: Vec<PathBuf>,
+}
+
+/// Print what a shell needs to complete the words of a command line
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  cityweld completions bash > ~/.local/share/bash-completion/completions/cityweld")]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_name = "SHELL", value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+/// Print a manual page (roff), or write all of them
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  cityweld man align | man -l -\n  cityweld man -o ~/.local/share/man/man1")]
+pub struct ManArgs {
+    /// The command whose page it is [default: the program]
+    #[arg(value_name = "COMMAND")]
+    pub command: Option<String>,
+    /// Folder to write the pages of the program and of all commands to
+    #[arg(short, long, value_name = "DIR", conflicts_with = "command")]
+    pub output: Option<PathBuf>,
 }
 
 /// Write a given (or edited) alignment again, in the formats asked for

@@ -7,6 +7,7 @@ use crate::city::CityModel;
 use crate::export::PlaneAttitude;
 use crate::format::escaped;
 use crate::georeference::Estimate;
+use crate::inspect::Inspection;
 use crate::merging::{Account, Merge};
 use crate::planes::CityPlanes;
 use crate::verdict::{Alignment, Freedom, FreedomUnit, Verdict};
@@ -83,6 +84,44 @@ pub fn of_start(estimate: &Estimate, distance_m: f64, seconds: f64) -> String {
     table.row("rotation", format!("sigma {heading:.1} deg of heading, {tilt:.1} deg of tilt"));
     table.row("scale", format!("{:.6} m per reconstruction unit, sigma {:.1} %", pose.scale, 100.0 * sigmas.log_scale));
     table.row("time", format!("{seconds:.1} s"));
+    table.text
+}
+
+/// What is seen in an input.
+pub fn of_inspection(seen: &Inspection) -> String {
+    let mut table = Table::new(&format!("{}: {}", seen.path, seen.format), 13);
+    let counts = [
+        ("objects", seen.objects),
+        ("parts", seen.parts),
+        ("triangles", seen.triangles),
+        ("holes", seen.holes),
+        ("images", seen.images),
+        ("points", seen.points),
+        ("observations", seen.observations),
+    ];
+    counts
+        .into_iter()
+        .filter_map(|(name, count)| Some((name, count?)))
+        .for_each(|(name, count)| table.row(name, count));
+    for (lod, kinds) in &seen.polygons {
+        let kinds: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+        table.row("polygons", format!("level {lod}: {}", kinds.join(", ")));
+    }
+    if let Some(crs) = &seen.crs {
+        table.row("crs", &crs.text);
+    }
+    if let (Some(low), Some(high)) = (seen.low, seen.high) {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            table.row(name, format!("{} to {}", low[axis], high[axis]));
+        }
+    }
+    if let Some([x, y, z]) = seen.up_guess {
+        table.row("up", format!("{x:.3}, {y:.3}, {z:.3} (by the cameras)"));
+    }
+    if let Some(unit) = &seen.unit_guess {
+        table.row("unit", unit);
+    }
+    seen.warnings.iter().for_each(|warning| table.row("warning", warning));
     table.text
 }
 

@@ -37,6 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let input = InputSummary {
         city: CityCounts::of(&city.model, vec!["city.obj".into()]),
         sfm: SfmCounts::of(&sfm, "sfm".into(), Some(superpixels.superpixels.len())),
+        prior: None,
     };
     let files = write_alignment(out.path(), &alignment, &input, &city.model, &sfm)?;
     println!("written: {}", files.join(", "));

@@ -3,7 +3,9 @@
 use crate::city::CityError;
 use crate::export::{ExportError, OutputError, ReportError};
 use crate::format::PlacementError;
+use crate::format::positions::PositionsError;
 use crate::geometry::StartError;
+use crate::georeference::GeoreferenceError;
 use crate::imagery::ImageryError;
 use crate::merging::MergeError;
 use crate::observer::Cancelled;
@@ -25,6 +27,12 @@ pub enum Error {
     /// A start or an earlier alignment that cannot be read.
     #[error(transparent)]
     Placement(#[from] PlacementError),
+    /// Positions of photographs, or control points, that cannot be read.
+    #[error(transparent)]
+    Positions(#[from] PositionsError),
+    /// ... or that place nothing.
+    #[error(transparent)]
+    Georeference(#[from] GeoreferenceError),
     #[error(transparent)]
     Merge(#[from] MergeError),
     #[error(transparent)]

@@ -4,7 +4,7 @@
 //! city files ──► read_city ──► CityModel ──► PreparedCity ──┐
 //! COLMAP, PLY ─► read_reconstruction ──► Reconstruction ────┤
 //! labels, photographs ─► lift_superpixels ──────────────────┼─► align ──► Alignment ──► write_alignment
-//! a coarse pose ─► read_start ──► Start ──► AlignOptions ───┘
+//! a coarse pose ─► read_start ──► Start ──► AlignOptions ───┘   (positions, control points ─► Estimate ─► Start)
 //!
 //! reconstructions (and starts in a city) ──► MergePart ──► merge ──► Merge ──► write_merge
 //! ```
@@ -15,10 +15,12 @@
 //! | know how sure it is | [`Verdict`], [`Certainty`], [`Freedom`], [`Alternative`], [`types::ModelErrors`] |
 //! | read a city model | [`read_city`], [`CityOptions`], [`CityModel`], [`PreparedCity`] |
 //! | read a reconstruction and a start | [`read_reconstruction`], [`Reconstruction`], [`read_start`], [`Start`] |
+//! | get a start from positions or control points | [`read_positions`], [`from_positions`], [`read_control_points`], [`from_control_points`], [`agreed`]; what comes back: [`Estimate`] |
 //! | use label images or photographs | [`lift_superpixels`], [`SuperpixelSource`], [`SuperpixelOptions`] |
 //! | join reconstructions | [`merge()`], [`MergePart`], [`MergeOptions`]; with places known already [`steps::join`]; what comes back: [`Merge`] |
 //! | write results | [`write_alignment`], [`write_merge`], [`write_colmap`], [`write_ply`], [`output`] |
 //! | follow long work, or end it | [`Observer`], [`Stage`], [`Cancelled`] |
+//! | see what is in any input | [`inspect()`], [`Inspection`] |
 //! | hold every error in one type | [`Error`] |
 //! | solve point-to-plane problems of one's own | [`solvers`] |
 //! | answer the `solve` command's JSON | [`problem`] |
@@ -40,6 +42,7 @@ pub mod solvers;
 pub mod problem;
 mod robust;
 mod planes;
+mod georeference;
 mod correspondence;
 mod evidence;
 mod uncertainty;
@@ -51,6 +54,7 @@ pub mod synthetic;
 mod align;
 mod merge;
 mod error;
+mod inspect;
 
 #[cfg(feature = "cli")]
 #[doc(hidden)]
@@ -59,6 +63,7 @@ pub mod cli;
 // Alignment.
 pub use align::{AlignOptions, Up, align};
 pub use error::Error;
+pub use inspect::{InputKind, InspectedCrs, Inspection, inspect};
 pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
@@ -66,8 +71,11 @@ pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 pub use city::{
     CityLod, CityModel, CityOptions, CityUnit, CityUp, Facet, read_city, read_city_contents, read_city_files,
 };
+pub use format::control::read_control_points;
+pub use format::positions::read_positions;
 pub use format::read_start;
 pub use geometry::{Start, StartSigmas};
+pub use georeference::{Estimate, agreed, from_control_points, from_positions};
 pub use planes::PreparedCity;
 pub use reconstruction::{Image, Observation, Reconstruction, read_reconstruction};
 
@@ -95,8 +103,11 @@ pub mod types {
     pub use crate::export::{ExportError, OutputError, ReportError};
     pub use crate::format::PlacementError;
     pub use crate::format::cityjson::{CityJsonError, CityJsonProblem};
+    pub use crate::format::control::{ControlFile, PointRole, PointSight, StoredPoint};
     pub use crate::format::ply::{CloudField, FieldKind};
+    pub use crate::format::positions::{Frame, PositionsError, PositionsFile, StoredPosition};
     pub use crate::geometry::{Camera, CameraModel, StartError};
+    pub use crate::georeference::{ControlPoint, ControlUse, GeoreferenceError};
     pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};
     pub use crate::merging::{
         Account, Anchor, DropReason, Edge, EdgeFault, EdgeSource, Fused, Ledger, MergeError, MergedFrame, PairFault,

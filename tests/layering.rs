@@ -18,6 +18,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("problem", &["geometry", "format", "solvers"]),
     ("robust", &["geometry", "random", "solvers"]),
     ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
+    ("georeference", &["limits", "geometry", "format", "city", "reconstruction", "robust", "planes"]),
     ("correspondence", &["limits", "observer", "geometry", "city", "planes", "solvers", "robust"]),
     ("evidence", &["limits", "geometry", "planes", "correspondence"]),
     ("uncertainty", &["limits", "geometry", "city", "planes", "correspondence", "robust"]),
@@ -37,7 +38,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "verdict",
         ],
     ),
-    ("export", &["geometry", "format", "city", "reconstruction", "planes", "verdict", "merging"]),
+    ("export", &["geometry", "format", "city", "reconstruction", "planes", "georeference", "verdict", "merging"]),
     (
         "align",
         &[
@@ -56,7 +57,11 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("merge", &["limits", "observer", "geometry", "imagery", "reconstruction", "planes", "merging", "align"]),
-    ("error", &["observer", "geometry", "format", "city", "reconstruction", "imagery", "merging", "export"]),
+    (
+        "error",
+        &["observer", "geometry", "format", "city", "reconstruction", "imagery", "georeference", "merging", "export"],
+    ),
+    ("inspect", &["limits", "geometry", "format", "city", "reconstruction", "planes", "error"]),
     // Parses, reads, writes and prints: it neither searches nor estimates.
     (
         "cli",
@@ -71,11 +76,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "solvers",
             "problem",
             "planes",
+            "georeference",
             "verdict",
             "merging",
             "export",
             "align",
             "merge",
+            "inspect",
         ],
     ),
     // For tests, examples and benchmarks: no room may import it.

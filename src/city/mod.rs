@@ -9,6 +9,7 @@ mod contents;
 mod crs;
 mod degrees;
 mod error;
+mod distance;
 mod facet;
 mod files;
 mod foreign;

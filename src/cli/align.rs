@@ -1,7 +1,10 @@
 //! `cityweld align`
 
 use crate::city::read_city;
-use crate::export::{CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, write_alignment};
+use crate::export::{
+    CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, start_report, write_alignment,
+};
+use crate::georeference::Estimate;
 use crate::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
 use crate::planes::PreparedCity;
 use crate::reconstruction::{Reconstruction, read_reconstruction};
@@ -14,16 +17,20 @@ use super::{Outcome, Session, summary};
 
 pub fn run(args: &AlignArgs, session: &Session) -> Result<Outcome> {
     let plan = AlignPlan::new(args, session.common.seed)?;
-    let output = session.begin(&plan.output, OutputKind::Folder)?;
+    let output = plan.output.as_ref().map(|path| session.begin(path, OutputKind::Folder)).transpose()?;
     carry_out(&plan, output, session)
 }
 
-/// Aligns, writes into `output`, puts it in its place and tells.
-pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<Outcome> {
+/// Aligns, writes into `output`, puts it in its place and tells; without an output the start alone is told.
+pub fn carry_out(plan: &AlignPlan, output: Option<Output>, session: &Session) -> Result<Outcome> {
     let voice = &session.voice;
     let inputs = Inputs::read(plan, session)?;
     let superpixels = inputs.superpixels.as_ref();
-    let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &plan.options, &voice.bar)?;
+    let Some((output, place)) = output.zip(plan.output.as_ref()) else {
+        return tell_start(&inputs, plan, session);
+    };
+    let options = plan.options(inputs.estimate.start);
+    let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &options, &voice.bar)?;
     voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
     alignment.warnings.splice(0..0, inputs.warnings(plan));
 
@@ -31,14 +38,14 @@ pub fn carry_out(plan: &AlignPlan, output: Output, session: &Session) -> Result<
     let summary = inputs.summary(plan);
     let files = write_alignment(output.path(), &alignment, &summary, &inputs.city.model, &inputs.sfm)?;
     output.commit()?;
-    voice.detail(&format!("{} written", plan.output.display()));
+    voice.detail(&format!("{} written", place.display()));
 
     voice.warnings(&alignment.warnings);
     if session.common.json {
-        voice.json(&alignment_report(&alignment, &summary)?, Some(&plan.output))?;
+        voice.json(&alignment_report(&alignment, &summary)?, Some(place))?;
     } else {
-        let table = summary::of_alignment(&alignment, &plan.output, &files, voice.seconds());
-        voice.result(&table, Some(&plan.output))?;
+        let table = summary::of_alignment(&alignment, place, &files, voice.seconds());
+        voice.result(&table, Some(place))?;
     }
     Ok(if alignment.verdict == Verdict::Aligned { Outcome::Good } else { Outcome::Doubtful })
 }
@@ -47,6 +54,21 @@ struct Inputs {
     city: PreparedCity,
     sfm: Reconstruction,
     superpixels: Option<LiftedSuperpixels>,
+    estimate: Estimate,
+    /// From the start to the nearest facet, metres.
+    distance_m: f64,
+}
+
+/// What `--dry-run` tells.
+fn tell_start(inputs: &Inputs, plan: &AlignPlan, session: &Session) -> Result<Outcome> {
+    let voice = &session.voice;
+    voice.warnings(&inputs.warnings(plan));
+    if session.common.json {
+        voice.json(&start_report(&inputs.estimate, inputs.distance_m)?, None)?;
+    } else {
+        voice.result(&summary::of_start(&inputs.estimate, inputs.distance_m, voice.seconds()), None)?;
+    }
+    Ok(Outcome::Good)
 }
 
 impl Inputs {
@@ -58,6 +80,9 @@ impl Inputs {
         voice.bar.show("reading the reconstruction", 0, 0);
         let sfm = read_reconstruction(&plan.sfm)?;
         voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
+        let estimate = plan.place.estimate(&sfm, &city)?;
+        let distance_m = estimate.distance_to_city(&sfm.points, &city)?;
+        voice.detail(&format!("start: {}; {distance_m:.1} m from the nearest facet", estimate.source));
         let superpixels = match &plan.superpixels {
             None => None,
             Some(source) => {
@@ -66,7 +91,7 @@ impl Inputs {
                 Some(lifted)
             }
         };
-        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels })
+        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, estimate, distance_m })
     }
 
     /// What was tolerated while reading, once each.
@@ -74,6 +99,7 @@ impl Inputs {
         let mut warnings = plan.warnings.clone();
         warnings.extend(self.city.model.warnings.iter().map(ToString::to_string));
         warnings.extend(self.sfm.warnings.iter().map(ToString::to_string));
+        warnings.extend(self.estimate.warnings.iter().cloned());
         warnings.extend(self.superpixels.iter().flat_map(|lifted| &lifted.warnings).map(ToString::to_string));
         warnings
     }
@@ -83,6 +109,7 @@ impl Inputs {
         InputSummary {
             city: CityCounts::of(&self.city.model, plan.city.names()),
             sfm: SfmCounts::of(&self.sfm, file_name(&plan.sfm), superpixels),
+            prior: Some(self.estimate.clone()),
         }
     }
 }

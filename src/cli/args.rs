@@ -5,16 +5,26 @@ mod city;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
 pub use city::CityArgs;
+/// The version, the commit where whoever built it named one in CITYWELD_COMMIT (a package has no repository to ask), and the features.
+static VERSION: LazyLock<String> = LazyLock::new(|| {
+    let commit = option_env!("CITYWELD_COMMIT").filter(|commit| !commit.is_empty());
+    let commit = commit.map_or(String::new(), |commit| format!("commit {commit}, "));
+    format!("{} ({commit}features: {})", env!("CARGO_PKG_VERSION"), FEATURES.join(", "))
+});
+
+/// The cargo features that this program was built with.
+const FEATURES: [&str; 1] = ["cli"];
 
 /// Sets structure-from-motion reconstructions into polyhedral city models.
 #[derive(Parser, Debug)]
 #[command(
     name = "cityweld",
-    version,
+    version = VERSION.as_str(),
     propagate_version = true,
     subcommand_required = true,
     arg_required_else_help = true,
@@ -37,9 +47,12 @@ pub enum Command {
     Align(AlignArgs),
     Merge(MergeArgs),
     Planes(PlanesArgs),
+    Inspect(InspectArgs),
     Export(ExportArgs),
     Demo(DemoArgs),
     Solve(SolveArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 /// What every command takes.
@@ -103,11 +116,22 @@ pub struct AlignArgs {
     /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
     pub sfm: PathBuf,
     /// Folder to make; must not exist (see --force)
-    #[arg(short, long, value_name = "OUT")]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
+    pub output: Option<PathBuf>,
     /// Coarse place of the reconstruction, JSON (see below), or the alignment.json of an earlier run
     #[arg(long, value_name = "FILE")]
     pub start: Option<PathBuf>,
+    /// Where the photographs were taken: a folder of photographs (EXIF GPS), database.db of COLMAP, reconstruction.json of OpenSfM, geo.txt
+    /// of ODM, a table with a header (Metashape, RealityScan), or lines of name, X, Y, Z [default: --photos, where nothing else is given]
+    #[arg(long, value_name = "SOURCE")]
+    pub positions: Option<PathBuf>,
+    /// Control points: lines x y z X Y Z [sigma [name]] (reconstruction, then city), or gcp_list.txt of ODM; the word check at the end of
+    /// a line keeps its point out and has its residual reported
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Read and check everything, tell the start and its distance from the city, write nothing
+    #[arg(long)]
+    pub dry_run: bool,
     /// Folder of label images (PNG, grey, 8 or 16 bit; 0 is no superpixel), named as the photographs
     #[arg(long, value_name = "DIR")]
     pub labels: Option<PathBuf>,
@@ -181,6 +205,38 @@ pub struct PlanesArgs {
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub city_options: CityArgs,
+}
+
+/// Show what the program sees in any input: a city, a reconstruction, photographs, positions, control points
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  cityweld inspect city.obj sfm/ photos/ geo.txt gcp_list.txt --json\n\n\
+    With --json: an array with one object for each path.\n\n\
+    Exit status: 0 all are told; 2 one cannot be read.")]
+pub struct InspectArgs {
+    /// Files and folders
+    #[arg(value_name = "PATH", num_args = 1.., required = true)]
+    pub paths: Vec<PathBuf>,
+}
+
+/// Print what a shell needs to complete the words of a command line
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  cityweld completions bash > ~/.local/share/bash-completion/completions/cityweld")]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_name = "SHELL", value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+/// Print a manual page (roff), or write all of them
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  cityweld man align | man -l -\n  cityweld man -o ~/.local/share/man/man1")]
+pub struct ManArgs {
+    /// The command whose page it is [default: the program]
+    #[arg(value_name = "COMMAND")]
+    pub command: Option<String>,
+    /// Folder to write the pages of the program and of all commands to
+    #[arg(short, long, value_name = "DIR", conflicts_with = "command")]
+    pub output: Option<PathBuf>,
 }
 
 /// Write a given (or edited) alignment again, in the formats asked for

@@ -67,8 +67,9 @@ pub fn run(args: &DemoArgs, session: &Session) -> Result<Outcome> {
     let output = session.begin(&args.output, OutputKind::Folder)?;
     unpack(output.path())?;
     let sample = output.path().join(SAMPLE_FOLDER);
-    let plan = AlignPlan { output: args.output.clone(), ..AlignPlan::new(&align_args(&sample), session.common.seed)? };
-    let outcome = carry_out(&plan, output, session)?;
+    let plan =
+        AlignPlan { output: Some(args.output.clone()), ..AlignPlan::new(&align_args(&sample), session.common.seed)? };
+    let outcome = carry_out(&plan, Some(output), session)?;
     if !session.common.json {
         session.voice.result(&what_next(&args.output), Some(&args.output))?;
     }
@@ -90,7 +91,10 @@ fn align_args(sample: &Path) -> AlignArgs {
         city: sample.join("city.obj"),
         sfm: sample.join("sfm"),
         // Within the sample, so that it never is a place that exists: the true one is set aside already.
-        output: sample.join("out"),
+        output: Some(sample.join("out")),
+        dry_run: false,
+        positions: None,
+        points: None,
         start: Some(sample.join("start.json")),
         labels: Some(sample.join("labels")),
         photos: None,

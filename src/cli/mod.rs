@@ -2,10 +2,13 @@
 
 mod align;
 mod args;
+mod completions;
 mod demo;
 mod export;
+mod inspect;
 mod interrupt;
 mod merge;
+mod place;
 mod plan;
 mod planes;
 mod print;
@@ -117,6 +120,9 @@ fn dispatch(command: &Command, session: &Session) -> anyhow::Result<Outcome> {
         Command::Align(args) => align::run(args, session),
         Command::Merge(args) => merge::run(args, session),
         Command::Planes(args) => planes::run(args, session),
+        Command::Inspect(args) => inspect::run(args, session),
+        Command::Completions(args) => completions::completions(args, session),
+        Command::Man(args) => completions::man(args, session),
         Command::Solve(args) => solve::run(args, session),
         Command::Demo(args) => demo::run(args, session),
         Command::Export(args) => export::run(args, session),

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use crate::city::CityOptions;
-use crate::format::read_start;
-use crate::geometry::Vector3;
+use crate::geometry::{Start, Vector3};
 use crate::imagery::SuperpixelSource;
 use crate::{AlignOptions, Up};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 
 use super::args::{AlignArgs, CityArgs, UpArg};
+use super::place::PlaceSources;
 use super::roles::{self, Given, Role};
 
 /// An alignment ready to be carried out.
@@ -17,9 +17,20 @@ pub struct AlignPlan {
     pub city: CityFiles,
     pub sfm: PathBuf,
     pub superpixels: Option<SuperpixelSource>,
-    pub options: AlignOptions,
-    pub output: PathBuf,
+    pub place: PlaceSources,
+    pub settings: Settings,
+    /// `None` where nothing is to be written.
+    pub output: Option<PathBuf>,
     pub warnings: Vec<String>,
+}
+
+/// What is set besides the start.
+pub struct Settings {
+    fixed_scale: Option<f64>,
+    up: Up,
+    accuracy_m: Option<f64>,
+    seed: u64,
+    false_alarm: f64,
 }
 
 /// The files of a city model.
@@ -37,21 +48,48 @@ impl AlignPlan {
         given.extend(args.labels.iter().map(|path| (Role::Labels, path.as_path())));
         given.extend(args.photos.iter().map(|path| (Role::Photos, path.as_path())));
         given.extend(args.start.iter().map(|path| (Role::Start, path.as_path())));
+        given.extend(args.positions.iter().map(|path| (Role::Positions, path.as_path())));
+        given.extend(args.points.iter().map(|path| (Role::Points, path.as_path())));
         roles::check("align", &given)?;
         let city = CityFiles::new(&args.city, &args.city_options)?;
         let mut warnings = Vec::new();
         let superpixels = superpixel_source(args, &mut warnings)?;
         let mut inputs = vec![&args.city, &args.sfm];
         inputs.extend(args.city_options.terrain.iter().chain(&args.start).chain(&args.labels).chain(&args.photos));
-        keeps_inputs(&args.output, &inputs)?;
+        inputs.extend(args.positions.iter().chain(&args.points));
+        let output = args.output.clone().filter(|_| !args.dry_run);
+        if let Some(output) = &output {
+            keeps_inputs(output, &inputs)?;
+        }
         Ok(AlignPlan {
-            options: align_options(args, seed)?,
+            place: PlaceSources::read(args)?,
+            settings: Settings::new(args, seed),
             city,
             sfm: args.sfm.clone(),
             superpixels,
-            output: args.output.clone(),
+            output,
             warnings,
         })
+    }
+
+    /// Everything that `align` takes, from a start on.
+    pub fn options(&self, start: Start) -> AlignOptions {
+        let Settings { fixed_scale, up, accuracy_m, seed, false_alarm } = self.settings;
+        let options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::new(start) };
+        options.with_false_alarm(false_alarm)
+    }
+}
+
+impl Settings {
+    fn new(args: &AlignArgs, seed: u64) -> Settings {
+        let up = match args.up {
+            UpArg::Auto => Up::Auto,
+            UpArg::None => Up::None,
+            UpArg::Given(up) => Up::Given(Vector3::from(up)),
+        };
+        let fixed_scale = args.scale.map(|scale| scale.0);
+        let accuracy_m = args.accuracy.map(|accuracy| accuracy.0);
+        Settings { fixed_scale, up, accuracy_m, seed, false_alarm: args.false_alarm.0 }
     }
 }
 
@@ -115,26 +153,6 @@ pub fn keeps_inputs(output: &Path, inputs: &[&PathBuf]) -> Result<()> {
         output.display()
     );
     Ok(())
-}
-
-fn align_options(args: &AlignArgs, seed: u64) -> Result<AlignOptions> {
-    let Some(start) = &args.start else {
-        bail!(
-            "no --start is given, and searching without one is not built yet; say with --start FILE where the reconstruction \
-             is, roughly (`cityweld align --help` shows the file; rotation_sigma_deg 180 leaves the heading open)"
-        );
-    };
-    let start = read_start(start)?;
-    let up = match args.up {
-        UpArg::Auto => Up::Auto,
-        UpArg::None => Up::None,
-        UpArg::Given(up) => Up::Given(Vector3::from(up)),
-    };
-    let fixed_scale = args.scale.map(|scale| scale.0);
-    let accuracy_m = args.accuracy.map(|accuracy| accuracy.0);
-    let mut options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::new(start) };
-    options.limits.verdict.false_alarm = args.false_alarm.0;
-    Ok(options)
 }
 
 fn superpixel_source(args: &AlignArgs, warnings: &mut Vec<String>) -> Result<Option<SuperpixelSource>> {

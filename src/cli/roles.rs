@@ -22,6 +22,8 @@ pub enum Role {
     Alignment,
     Labels,
     Photos,
+    Positions,
+    Points,
 }
 
 /// A path and the role that it is given.
@@ -65,6 +67,8 @@ impl Role {
             Role::Alignment => "--alignment",
             Role::Labels => "--labels",
             Role::Photos => "--photos",
+            Role::Positions => "--positions",
+            Role::Points => "--points",
         }
     }
 
@@ -74,7 +78,9 @@ impl Role {
             Role::Sfm | Role::Part => seen.is_reconstruction(),
             Role::Start | Role::Alignment => seen.json.is_some(),
             Role::Labels => seen.may_be_labels(),
-            Role::Photos => seen.has_images(),
+            Role::Photos | Role::Positions => seen.has_images(),
+            // Text; what is known at a glance is something else.
+            Role::Points => false,
         }
     }
 }

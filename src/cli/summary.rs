@@ -6,6 +6,8 @@ use std::path::Path;
 use crate::city::{CityContents, CityModel};
 use crate::export::PlaneAttitude;
 use crate::format::escaped;
+use crate::georeference::Estimate;
+use crate::inspect::Inspection;
 use crate::merging::{Account, Merge};
 use crate::planes::CityPlanes;
 use crate::verdict::{Alignment, Freedom, FreedomUnit, Verdict};
@@ -67,6 +69,59 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
     }
     table.row("written", format!("{} ({})", output.display(), files.join(", ")));
     table.row("time", format!("{seconds:.1} s"));
+    table.text
+}
+
+/// Where the search would begin.
+pub fn of_start(estimate: &Estimate, distance_m: f64, seconds: f64) -> String {
+    let mut table = Table::new(&format!("start: {}", estimate.source), 13);
+    let (pose, sigmas) = (estimate.start.city_from_sfm(), estimate.start.sigmas());
+    let middle = pose.apply(&estimate.middle);
+    table.row("middle", format!("{:.2}, {:.2}, {:.2} m", middle.x, middle.y, middle.z));
+    table.row("distance", format!("{distance_m:.1} m from the city's nearest facet"));
+    table.row("position", format!("sigma {:.2} m horizontally, {:.2} m of height", sigmas.position_m, sigmas.height_m));
+    let [heading, tilt] = [sigmas.heading_rad, sigmas.tilt_rad].map(f64::to_degrees);
+    table.row("rotation", format!("sigma {heading:.1} deg of heading, {tilt:.1} deg of tilt"));
+    table.row("scale", format!("{:.6} m per reconstruction unit, sigma {:.1} %", pose.scale, 100.0 * sigmas.log_scale));
+    table.row("time", format!("{seconds:.1} s"));
+    table.text
+}
+
+/// What is seen in an input.
+pub fn of_inspection(seen: &Inspection) -> String {
+    let mut table = Table::new(&format!("{}: {}", seen.path, seen.format), 13);
+    let counts = [
+        ("objects", seen.objects),
+        ("parts", seen.parts),
+        ("triangles", seen.triangles),
+        ("holes", seen.holes),
+        ("images", seen.images),
+        ("points", seen.points),
+        ("observations", seen.observations),
+    ];
+    counts
+        .into_iter()
+        .filter_map(|(name, count)| Some((name, count?)))
+        .for_each(|(name, count)| table.row(name, count));
+    for (lod, kinds) in &seen.polygons {
+        let kinds: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+        table.row("polygons", format!("level {lod}: {}", kinds.join(", ")));
+    }
+    if let Some(crs) = &seen.crs {
+        table.row("crs", &crs.text);
+    }
+    if let (Some(low), Some(high)) = (seen.low, seen.high) {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            table.row(name, format!("{} to {}", low[axis], high[axis]));
+        }
+    }
+    if let Some([x, y, z]) = seen.up_guess {
+        table.row("up", format!("{x:.3}, {y:.3}, {z:.3} (by the cameras)"));
+    }
+    if let Some(unit) = &seen.unit_guess {
+        table.row("unit", unit);
+    }
+    seen.warnings.iter().for_each(|warning| table.row("warning", warning));
     table.text
 }
 

@@ -14,8 +14,11 @@ mod output;
 mod output_error;
 mod planes;
 pub mod ply;
+mod prior;
 mod report;
 mod scene_extent;
+mod report_input;
+mod similarity;
 mod work;
 
 pub use earlier::UnpackedFile;
@@ -25,4 +28,5 @@ pub use merge_report::{merge_report, write_merge};
 pub use output::{Discard, Output, OutputKind, Replace};
 pub use output_error::OutputError;
 pub use planes::{PlaneAttitude, planes_report, write_planes_glb};
-pub use report::{CityCounts, InputSummary, ReportError, SfmCounts, alignment_report};
+pub use report::{ReportError, alignment_report, start_report};
+pub use report_input::{CityCounts, InputSummary, SfmCounts};

@@ -3,64 +3,15 @@
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 
-use crate::city::{CityModel, Crs};
+use super::prior::{PriorJson, residuals};
+use super::report_input::InputSummary;
+use super::similarity::SimilarityJson;
+use crate::city::Crs;
 use crate::geometry::Similarity;
-use crate::reconstruction::Reconstruction;
+use crate::georeference::{ControlUse, Estimate};
 use crate::verdict::{Alignment, Certainty, Freedom, ModelErrors, PlaneSupport, Support, Verdict};
 
 const SCHEMA: &str = "cityweld.alignment/1";
-
-/// What went in, for the record. Files by their names alone, so that a moved data set gives the same report.
-#[derive(Clone, Debug, Serialize)]
-pub struct InputSummary {
-    pub city: CityCounts,
-    pub sfm: SfmCounts,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub struct CityCounts {
-    pub files: Vec<String>,
-    /// Stands for itself in the report.
-    #[serde(skip)]
-    pub crs: Option<Crs>,
-    pub objects: usize,
-    pub facets: usize,
-    pub triangles: usize,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub struct SfmCounts {
-    pub file: String,
-    pub images: usize,
-    pub points: usize,
-    pub observations: usize,
-    /// Those of labels or photographs that points fall on; `None` where neither was given.
-    pub superpixels: Option<usize>,
-}
-
-impl CityCounts {
-    pub fn of(city: &CityModel, files: Vec<String>) -> CityCounts {
-        CityCounts {
-            files,
-            crs: city.crs.clone(),
-            objects: city.objects.len(),
-            facets: city.facets.len(),
-            triangles: city.triangles.len(),
-        }
-    }
-}
-
-impl SfmCounts {
-    pub fn of(sfm: &Reconstruction, file: String, superpixels: Option<usize>) -> SfmCounts {
-        SfmCounts {
-            file,
-            images: sfm.images.len(),
-            points: sfm.points.len(),
-            observations: sfm.track_elements.len(),
-            superpixels,
-        }
-    }
-}
 
 /// Why a result cannot be reported.
 #[derive(Debug, thiserror::Error)]
@@ -80,6 +31,7 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         Verdict::Aligned => (best, None),
         _ => (None, best),
     };
+    let prior = input.prior.as_ref().map(PriorJson::of).transpose()?;
     let report = AlignmentJson {
         schema: SCHEMA,
         verdict: alignment.verdict.word(),
@@ -104,6 +56,9 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         freedoms: alignment.freedoms.iter().map(freedom_json).collect::<Result<_, _>>()?,
         covariance: alignment.covariance.iter().map(to_raw_value).collect::<Result<_, _>>()?,
         support: SupportJson::of(&alignment.support),
+        prior,
+        control_points: residuals(alignment, input, |use_of| use_of != ControlUse::Check)?,
+        check_points: residuals(alignment, input, |use_of| use_of == ControlUse::Check)?,
         evidence: alignment.evidence.iter().map(evidence_json).collect::<Result<_, _>>()?,
         search: SearchJson {
             solver: &alignment.search.solver,
@@ -114,6 +69,20 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
         input,
         program: concat!("cityweld ", env!("CARGO_PKG_VERSION")),
     };
+    Ok(serde_json::to_string_pretty(&report)? + "\n")
+}
+
+/// The start alone, as `align --dry-run --json` tells it.
+pub fn start_report(estimate: &Estimate, distance_m: f64) -> Result<String, ReportError> {
+    #[derive(Serialize)]
+    struct StartJson<'a> {
+        #[serde(flatten)]
+        prior: PriorJson<'a>,
+        /// From the middle to the city's nearest facet, metres.
+        distance: f64,
+        warnings: &'a [String],
+    }
+    let report = StartJson { prior: PriorJson::of(estimate)?, distance: distance_m, warnings: &estimate.warnings };
     Ok(serde_json::to_string_pretty(&report)? + "\n")
 }
 
@@ -138,6 +107,9 @@ struct AlignmentJson<'a> {
     freedoms: Vec<Box<RawValue>>,
     covariance: Vec<Box<RawValue>>,
     support: SupportJson,
+    prior: Option<PriorJson<'a>>,
+    control_points: Vec<Box<RawValue>>,
+    check_points: Vec<Box<RawValue>>,
     evidence: Vec<Box<RawValue>>,
     search: SearchJson<'a>,
     warnings: &'a [String],
@@ -155,25 +127,6 @@ pub(super) struct CrsJson<'a> {
 impl CrsJson<'_> {
     pub(super) fn of(crs: &Crs) -> CrsJson<'_> {
         CrsJson { text: &crs.text, epsg: crs.epsg, vertical: crs.vertical.as_deref() }
-    }
-}
-
-#[derive(Serialize)]
-pub(super) struct SimilarityJson {
-    scale: f64,
-    rotation: Vec<Box<RawValue>>,
-    translation: Box<RawValue>,
-}
-
-impl SimilarityJson {
-    pub(super) fn of(similarity: &Similarity) -> Result<SimilarityJson, serde_json::Error> {
-        let r = similarity.rotation.matrix();
-        let rows = (0..3).map(|i| to_raw_value(&[r[(i, 0)], r[(i, 1)], r[(i, 2)]]));
-        Ok(SimilarityJson {
-            scale: similarity.scale,
-            rotation: rows.collect::<Result<_, _>>()?,
-            translation: to_raw_value(&similarity.translation.as_slice())?,
-        })
     }
 }
 

@@ -22,6 +22,9 @@ pub enum PlacementError {
         path.display()
     )]
     NotASimilarity { what: &'static str, path: PathBuf, source: NotASimilarity },
+    /// A matrix as text.
+    #[error("not a valid matrix: {found}; expected four rows of four numbers, s R and t in the first three, 0 0 0 1 in the last: {}", path.display())]
+    Matrix { path: PathBuf, found: String },
     #[error("not a valid start: {source}: {}", path.display())]
     Start { path: PathBuf, source: StartError },
     #[error("this is {}, expected {expected}; {remedy}: {}", kind.words(), path.display())]

@@ -1,11 +1,14 @@
-//! The start: a coarse similarity in JSON, and how far it may be off. The report of an earlier alignment is one, too.
+//! The start: a coarse similarity in JSON, and how far it may be off. The report of an earlier alignment is one, too, and so is a matrix
+//! of 4 x 4 as text.
 
 use std::path::Path;
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use super::alignment::{Spread, StoredAlignment, parse_alignment};
 use super::json_kind::JsonKind;
+use super::matrix::{looks_like_matrix, parse_matrix};
 use super::placement::{PlacementError, SimilarityRecord, parse_json, read_named};
 use crate::geometry::{Start, StartError, StartSigmas};
 
@@ -28,12 +31,24 @@ struct StartRecord {
     rotation_sigma_deg: Option<f64>,
     tilt_sigma_deg: Option<f64>,
     scale_sigma: Option<f64>,
+    // What `align` tells of a start besides: under `prior`, and with --dry-run.
+    #[serde(rename = "source")]
+    _source: Option<IgnoredAny>,
+    #[serde(rename = "middle")]
+    _middle: Option<IgnoredAny>,
+    #[serde(rename = "distance")]
+    _distance: Option<IgnoredAny>,
+    #[serde(rename = "warnings")]
+    _warnings: Option<IgnoredAny>,
 }
 
 /// Reads a start, or takes an alignment's transform (or best candidate) for one; sigmas that the file does not name have
 /// their defaults.
 pub fn read_start(path: &Path) -> Result<Start, PlacementError> {
     let text = read_named(path, "start")?;
+    if looks_like_matrix(&text) {
+        return Ok(Start::with_default_sigmas(parse_matrix(&text, path)?));
+    }
     match JsonKind::of(&text) {
         None | Some(JsonKind::Start) => parse_start(&text, path),
         Some(JsonKind::Alignment) => start_from(&parse_alignment(&text, path)?).map_err(at(path)),

@@ -14,6 +14,7 @@ mod rays;
 mod rotation;
 mod similarity;
 mod start;
+mod umeyama;
 
 pub use axes::Axes;
 pub use camera::Camera;
@@ -23,5 +24,6 @@ pub use rays::RayCaster;
 pub use rotation::{nearest_rotation, orthonormalised};
 pub use similarity::{NotASimilarity, Similarity};
 pub use start::{Start, StartError, StartSigmas};
+pub use umeyama::umeyama;
 
 pub use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};

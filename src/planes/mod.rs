@@ -25,4 +25,4 @@ pub use fit::{FittedPlane, fit_plane_robustly};
 pub use hit::{Hit, OrientedPoint};
 pub use patches::{Patches, patches};
 pub use prepared_city::PreparedCity;
-pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start};
+pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start, up_of_cameras};

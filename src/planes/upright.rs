@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::patches::Patches;
 use super::up_votes::UpSupport;
-use crate::geometry::{Matrix3, Vector3};
+use crate::geometry::{Matrix3, Rotation3, Vector3};
 use crate::limits::Limits;
 
 /// Up in the sfm frame.
@@ -115,6 +115,14 @@ pub fn up_candidates(patches: &Patches, start: &Upright, limits: &Limits) -> Vec
         off_start: evidence.off_start(&o.up),
     };
     distinct.into_iter().map(told).collect()
+}
+
+/// The directions that cameras alone allow, from how they were held; the best supported first.
+pub fn up_of_cameras(cam_from_sfm: &[Rotation3<f64>], limits: &Limits) -> Vec<UpCandidate> {
+    let held = cam_from_sfm.iter().map(|r| -r.matrix().row(1).transpose()).sum::<Vector3<f64>>();
+    let guess = Upright { up: held.try_normalize(0.0).unwrap_or_else(Vector3::z), sigma_rad: PI, known: false };
+    let patches = Patches { cam_from_sfm_rotations: cam_from_sfm.to_vec(), ..Patches::default() };
+    up_candidates(&patches, &guess, limits)
 }
 
 struct Evidence {

@@ -221,6 +221,10 @@ fn expected(role: Role) -> &'static str {
         Role::Alignment => "an alignment.json",
         Role::Labels => "a folder of label images (PNG, grey)",
         Role::Photos => "a folder of images (JPEG or PNG)",
+        Role::Points => "control points (x y z X Y Z [sigma [name]], or gcp_list.txt)",
+        Role::Positions => {
+            "positions of photographs (a folder with EXIF, database.db, geo.txt, a table, or name X Y Z)"
+        }
     }
 }
 

@@ -1,5 +1,8 @@
+use super::super::report_input::{CityCounts, SfmCounts};
 use super::*;
+use crate::city::CityModel;
 use crate::geometry::{Point3, Rotation3, Vector3};
+use crate::reconstruction::Reconstruction;
 use crate::verdict::{Alternative, FreedomKind, FreedomUnit, SearchSummary};
 use serde_json::{Value, json};
 
@@ -41,6 +44,7 @@ fn input() -> InputSummary {
     InputSummary {
         city: CityCounts::of(&CityModel::default(), vec!["city.obj".into()]),
         sfm: SfmCounts::of(&Reconstruction::default(), "sfm".into(), None),
+        prior: None,
     }
 }
 

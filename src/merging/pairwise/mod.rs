@@ -32,7 +32,6 @@ mod test_scene;
 mod shared_tracks;
 mod track_fit;
 mod track_checks;
-mod umeyama;
 mod whole_planes;
 
 pub(super) use decision::PairDecision;

@@ -7,15 +7,15 @@
 //! Degenerate   couples on a line or in a point: `None`
 //! Source       Umeyama, IEEE PAMI 13 (1991), equations 40 to 42
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
-use crate::geometry::{Point3, Similarity};
+use super::Similarity;
 
 /// Ratio of the second spread to the first below which points lie on a line: rounding.
 const ON_A_LINE: f64 = 1e-9;
 
 /// Least-squares similarity of point couples; `None` where they do not fix it.
-pub(super) fn umeyama(couples: &[(Point3<f64>, Point3<f64>)]) -> Option<Similarity> {
+pub fn umeyama(couples: &[(Point3<f64>, Point3<f64>)]) -> Option<Similarity> {
     let count = couples.len() as f64;
     let mean_a = couples.iter().map(|(a, _)| a.coords).sum::<Vector3<f64>>() / count;
     let mean_b = couples.iter().map(|(_, b)| b.coords).sum::<Vector3<f64>>() / count;

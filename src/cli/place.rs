@@ -1,0 +1,73 @@
+//! Where the reconstruction stands, from whatever was given: read before any long work, estimated once city and reconstruction are there.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+
+use super::args::AlignArgs;
+use super::plan::file_name;
+use crate::city::CityModel;
+use crate::format::control::{ControlFile, read_control_points};
+use crate::format::positions::{Frame, PositionsFile, read_positions};
+use crate::format::read_start;
+use crate::geometry::Start;
+use crate::georeference::{Estimate, agreed, from_control_points, from_positions};
+use crate::reconstruction::Reconstruction;
+
+/// What was given to say it, read.
+pub struct PlaceSources {
+    start: Option<Named<Start>>,
+    positions: Option<Named<PositionsFile>>,
+    points: Option<Named<ControlFile>>,
+}
+
+/// Something read, and the name of its file.
+struct Named<T> {
+    name: String,
+    read: T,
+}
+
+impl<T> Named<T> {
+    fn new(path: &Path, read: T) -> Named<T> {
+        Named { name: file_name(path), read }
+    }
+}
+
+impl PlaceSources {
+    pub fn read(args: &AlignArgs) -> Result<PlaceSources> {
+        let start = args.start.as_ref().map(|path| anyhow::Ok(Named::new(path, read_start(path)?))).transpose()?;
+        let named_positions = |path: &PathBuf| anyhow::Ok(Named::new(path, read_positions(path)?));
+        let mut positions = args.positions.as_ref().map(named_positions).transpose()?;
+        let points =
+            args.points.as_ref().map(|path| anyhow::Ok(Named::new(path, read_control_points(path)?))).transpose()?;
+        if start.is_none() && positions.is_none() && points.is_none() {
+            let Some(photos) = args.photos.as_ref() else {
+                bail!(
+                    "nothing says where the reconstruction is, and searching without that is not built yet; give --positions (EXIF, COLMAP \
+                     database, geo.txt, name X Y Z, ...), --photos with GPS, or --start FILE (`cityweld align --help` shows the forms)"
+                );
+            };
+            let read = named_positions(photos)
+                .context("nothing else says where the reconstruction is, so the photographs were asked; give --positions or --start")?;
+            positions = Some(read);
+        }
+        Ok(PlaceSources { start, positions, points })
+    }
+
+    /// The start that all sources together give.
+    pub fn estimate(&self, sfm: &Reconstruction, city: &CityModel) -> Result<Estimate> {
+        let frame = city.crs.as_ref().and_then(|crs| crs.epsg).map(Frame::Epsg);
+        let frame = frame.as_ref();
+        let mut estimates = Vec::new();
+        if let Some(Named { name, read }) = &self.start {
+            estimates.push(Estimate::given(*read, &sfm.points, format!("start ({name})")));
+        }
+        if let Some(Named { name, read }) = &self.positions {
+            estimates.push(from_positions(read, name, sfm, city, frame)?);
+        }
+        if let Some(Named { name, read }) = &self.points {
+            estimates.push(from_control_points(read, name, sfm, city, frame)?);
+        }
+        agreed(estimates)?.context("nothing says where the reconstruction is")
+    }
+}

@@ -1,0 +1,20 @@
+//! Why positions cannot be read.
+
+use std::path::PathBuf;
+
+use crate::format::escaped;
+
+/// Why a file, folder or database has no positions to give.
+#[derive(Debug, thiserror::Error)]
+pub enum PositionsError {
+    #[error("cannot read the {what}: {source}: {}", path.display())]
+    Io { what: &'static str, path: PathBuf, source: std::io::Error },
+    #[error("line {line}: {}; expected {expected}: {}", escaped(found), path.display())]
+    Line { path: PathBuf, line: usize, found: String, expected: &'static str },
+    #[error("{}; expected {expected}: {}", escaped(found), path.display())]
+    Content { path: PathBuf, found: String, expected: &'static str },
+    #[error("the database cannot be read: {source}; expected database.db of COLMAP: {}", path.display())]
+    Database { path: PathBuf, source: rusqlite::Error },
+    #[error("not a valid OpenSfM reconstruction: {source}: {}", path.display())]
+    Json { path: PathBuf, source: serde_json::Error },
+}

@@ -1,0 +1,116 @@
+//! Heading, scale and shift of levelled camera positions.
+//!
+//! Question     which turn about up, scale and shift lay the cameras of a levelled reconstruction on their measured positions?
+//! Input        couples of a levelled centre and a position; heights where they are known
+//! Output       [`LevelFit`], and which couples were believed
+//! Method       1. consensus: of pairs of couples the one under which the median horizontal residual is least (least median of squares,
+//!                 Rousseeuw 1984), so that up to half of the positions may be wrong;
+//!              2. couples within three and a half sigmas of that median take part in least squares, in complex numbers
+//!                 b = z a + t: z = sum conj(a) b / sum |a|^2 about the means; twice;
+//!              3. the height is the median of what the believed couples say
+//! Fails when   fewer than two couples are apart
+
+use nalgebra::{Complex, Point3, Vector3};
+
+use crate::robust::median;
+
+/// A camera's levelled centre and where it was measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Couple {
+    /// Sfm units, z up.
+    pub level: Point3<f64>,
+    /// Metres.
+    pub east_north: [f64; 2],
+    pub height_m: Option<f64>,
+}
+
+/// city = turn(heading) * scale * level + shift.
+#[derive(Clone, Debug)]
+pub(super) struct LevelFit {
+    pub scale: f64,
+    pub heading_rad: f64,
+    pub shift: Vector3<f64>,
+    /// Indices of the couples that took part.
+    pub believed: Vec<usize>,
+    /// Of a position about the fit, each horizontal axis, metres.
+    pub noise_m: f64,
+    /// Root of the sum of squared distances of the believed positions from their middle, metres.
+    pub spread_m: f64,
+    /// The median horizontal residual of all couples, metres: by this fits are compared.
+    pub median_m: f64,
+}
+
+/// Pairs that are tried; of two in three good positions four in nine pairs are good. Chosen: a tenth of a second for thousands of photographs.
+const MOST_PAIRS: usize = 2000;
+/// A median of |r| over the sigma of one axis: r follows a Rayleigh distribution, whose median is sqrt(2 ln 2) sigmas.
+const MEDIAN_PER_SIGMA: f64 = 1.1774;
+/// Beyond so many sigmas a position is wrong.
+const GATE_SIGMAS: f64 = 3.5;
+/// A gate is never narrower, metres: the centimetres of good receivers shall not exclude each other. Chosen.
+const LEAST_GATE_M: f64 = 0.5;
+const ROUNDS: usize = 3;
+
+type Planar = Complex<f64>;
+
+/// `None` where the couples are all at one place, or have no height.
+pub(super) fn level_fit(couples: &[Couple]) -> Option<LevelFit> {
+    let a: Vec<Planar> = couples.iter().map(|c| Planar::new(c.level.x, c.level.y)).collect();
+    let b: Vec<Planar> = couples.iter().map(|c| Planar::new(c.east_north[0], c.east_north[1])).collect();
+    let residuals = |(z, t): (Planar, Planar)| a.iter().zip(&b).map(move |(a, b)| (b - z * a - t).norm());
+    let median_of = |map| median(&mut residuals(map).collect::<Vec<f64>>()).unwrap_or(f64::INFINITY);
+    let maps = pairs(couples.len()).filter_map(|(i, j)| of_pair([a[i], a[j]], [b[i], b[j]]));
+    let (median_m, mut map) = maps.map(|map| (median_of(map), map)).min_by(|x, y| x.0.total_cmp(&y.0))?;
+    let mut believed: Vec<usize> = Vec::new();
+    let mut gate_m = (GATE_SIGMAS * median_m / MEDIAN_PER_SIGMA).max(LEAST_GATE_M);
+    for _ in 0..ROUNDS {
+        believed = residuals(map).enumerate().filter(|(_, r)| *r <= gate_m).map(|(i, _)| i).collect();
+        map = least_squares(&believed, &a, &b)?;
+        gate_m = (GATE_SIGMAS * noise(&believed, residuals(map))).max(LEAST_GATE_M);
+    }
+    let (z, t) = map;
+    let scale = z.norm();
+    let mut heights: Vec<f64> =
+        believed.iter().filter_map(|&i| Some(couples[i].height_m? - scale * couples[i].level.z)).collect();
+    let up_m = median(&mut heights)?;
+    let middle = believed.iter().map(|&i| b[i]).sum::<Planar>() / believed.len() as f64;
+    Some(LevelFit {
+        scale,
+        heading_rad: z.arg(),
+        shift: Vector3::new(t.re, t.im, up_m),
+        noise_m: noise(&believed, residuals(map)),
+        spread_m: believed.iter().map(|&i| (b[i] - middle).norm_sqr()).sum::<f64>().sqrt(),
+        median_m: median_of(map),
+        believed,
+    })
+}
+
+/// All pairs, or an even choice of them.
+fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
+    let all = count * count.saturating_sub(1) / 2;
+    let step = all.div_ceil(MOST_PAIRS).max(1);
+    (0..count).flat_map(move |i| (i + 1..count).map(move |j| (i, j))).step_by(step)
+}
+
+fn of_pair(a: [Planar; 2], b: [Planar; 2]) -> Option<(Planar, Planar)> {
+    let z = (b[1] - b[0]) / (a[1] - a[0]);
+    (z.is_finite() && z.norm() > 0.0).then(|| (z, b[0] - z * a[0]))
+}
+
+fn least_squares(of: &[usize], a: &[Planar], b: &[Planar]) -> Option<(Planar, Planar)> {
+    let mean = |values: &[Planar]| of.iter().map(|&i| values[i]).sum::<Planar>() / of.len() as f64;
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let (mut cross, mut square) = (Planar::new(0.0, 0.0), 0.0);
+    for &i in of {
+        cross += (a[i] - mean_a).conj() * (b[i] - mean_b);
+        square += (a[i] - mean_a).norm_sqr();
+    }
+    let z = cross / square;
+    (z.is_finite() && z.norm() > 0.0).then(|| (z, mean_b - z * mean_a))
+}
+
+/// One sigma of each axis: 2 n residuals, four unknowns.
+fn noise(of: &[usize], residuals: impl Iterator<Item = f64>) -> f64 {
+    let all: Vec<f64> = residuals.collect();
+    let squares: f64 = of.iter().map(|&i| all[i] * all[i]).sum();
+    (squares / (2.0 * of.len() as f64 - 4.0).max(1.0)).sqrt()
+}

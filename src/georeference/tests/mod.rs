@@ -1,0 +1,7 @@
+//! Starts from made-up captures whose truth is known.
+
+mod agreement;
+mod control;
+mod positions;
+mod scene;
+mod systems;

@@ -1,0 +1,280 @@
+//! What the program sees in any input, before anything is searched: one [`Inspection`] for each path.
+//!
+//! A path is asked, by its content, for a reconstruction, a city, positions, control points, in this order; what each reader finds fills the
+//! same fields. A new format of a city or a reconstruction needs nothing here but a name.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::city::{CityError, CityModel, CityOptions, read_city};
+use crate::error::Error;
+use crate::format::control::{ControlFile, PointSight, read_control_points};
+use crate::format::file::open_regular;
+use crate::format::gltf::is_glb;
+use crate::format::positions::{Frame, PositionsFile, read_positions};
+use crate::geometry::{Point3, Vector3};
+use crate::limits::Limits;
+use crate::planes::up_of_cameras;
+use crate::reconstruction::{Reconstruction, ReconstructionError, read_reconstruction};
+
+/// What a path holds. Fields that make no sense for it are absent from the JSON.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Inspection {
+    pub path: String,
+    pub kind: InputKind,
+    /// With its version: "CityJSON 2.0".
+    pub format: String,
+    /// Buildings, or groups of a mesh; parts of others are counted as parts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub objects: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parts: Option<usize>,
+    /// By level of detail, then by kind (ground, roof, wall), where the format tells them.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub polygons: BTreeMap<String, BTreeMap<String, usize>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub triangles: Option<usize>,
+    /// Polygons that have some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holes: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crs: Option<InspectedCrs>,
+    /// Corners of the box about all, in the file's own system, east and north first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub low: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub high: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub images: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observations: Option<usize>,
+    /// Up in the reconstruction's frame, by how its cameras were held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub up_guess: Option<[f64; 3]>,
+    /// What coordinates seem to be in, where that is not metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit_guess: Option<String>,
+    pub warnings: Vec<String>,
+}
+
+/// What an input is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum InputKind {
+    #[default]
+    City,
+    Reconstruction,
+    Photographs,
+    Positions,
+    Points,
+}
+
+/// A coordinate system as a file names it, and what is understood of that.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct InspectedCrs {
+    pub text: String,
+    pub epsg: Option<u32>,
+    pub vertical: Option<String>,
+}
+
+/// Looks at a path, by content.
+pub fn inspect(path: &Path) -> Result<Inspection, Error> {
+    if path.is_dir() {
+        return inspect_folder(path);
+    }
+    let no_reconstruction = match read_reconstruction(path) {
+        Ok(sfm) => return Ok(Inspection::of_reconstruction(path, &sfm)),
+        Err(error) => error,
+    };
+    // A file that is one, and a bad one, is told by its reader.
+    if !matches!(no_reconstruction, ReconstructionError::NotAReconstruction { .. }) {
+        return Err(no_reconstruction.into());
+    }
+    let no_city = match read_city(path, &[], &CityOptions::default()) {
+        Ok(city) => return Ok(Inspection::of_city(path, city_format(path), &city)),
+        Err(error) => error,
+    };
+    if let Ok(points) = read_control_points(path) {
+        return Ok(Inspection::of_points(path, &points));
+    }
+    match (read_positions(path), no_city) {
+        (Ok(positions), _) => Ok(Inspection::of_positions(path, InputKind::Positions, &positions)),
+        // What no reader knows is told as the city's does: that one names what it is instead.
+        (Err(error), CityError::OtherFormat { found, .. }) if found.contains("unknown") => Err(error.into()),
+        (Err(_), error) => Err(error.into()),
+    }
+}
+
+/// A folder holds a model, or else photographs.
+fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
+    let no_model = match read_reconstruction(path) {
+        Ok(sfm) => return Ok(Inspection::of_reconstruction(path, &sfm)),
+        Err(error) => error,
+    };
+    match read_positions(path) {
+        Ok(positions) if matches!(no_model, ReconstructionError::NotAReconstruction { .. }) => {
+            Ok(Inspection::of_positions(path, InputKind::Photographs, &positions))
+        }
+        _ => Err(no_model.into()),
+    }
+}
+
+fn city_format(path: &Path) -> &'static str {
+    let mut start = [0; 64];
+    let read = open_regular(path).and_then(|mut file| file.read(&mut start)).unwrap_or(0);
+    let start = &start[..read];
+    match start {
+        _ if is_glb(start) => "GLB 2.0",
+        _ if String::from_utf8_lossy(start).trim_start_matches('\u{feff}').trim_start().starts_with('{') => "glTF 2.0",
+        _ => "OBJ",
+    }
+}
+
+impl Inspection {
+    fn of(path: &Path, kind: InputKind, format: &str) -> Inspection {
+        Inspection { path: path.to_string_lossy().into_owned(), kind, format: format.into(), ..Inspection::default() }
+    }
+
+    /// What a city model holds.
+    pub fn of_city(path: &Path, format: &str, city: &CityModel) -> Inspection {
+        let absolute = |p: Point3<f64>| (p + city.origin).into();
+        Inspection {
+            objects: Some(city.objects.len()),
+            triangles: Some(city.triangles.len()),
+            low: city.bounds().map(|(low, _)| absolute(low)),
+            high: city.bounds().map(|(_, high)| absolute(high)),
+            warnings: city.warnings.iter().map(ToString::to_string).collect(),
+            ..Inspection::of(path, InputKind::City, format)
+        }
+    }
+
+    /// What a reconstruction holds.
+    pub fn of_reconstruction(path: &Path, sfm: &Reconstruction) -> Inspection {
+        let is_colmap = sfm.colmap.is_some();
+        let rotations: Vec<_> = sfm.images.iter().map(|image| image.cam_from_sfm_rotation).collect();
+        let up = (!rotations.is_empty()).then(|| up_of_cameras(&rotations, &Limits::default())).unwrap_or_default();
+        let (low, high) = extent(sfm.points.iter().map(|p| p.coords)).unzip();
+        Inspection {
+            images: Some(sfm.images.len()).filter(|_| is_colmap),
+            points: Some(sfm.points.len()),
+            observations: Some(sfm.track_elements.len()).filter(|_| is_colmap),
+            up_guess: up.first().map(|candidate| candidate.up.into()),
+            low,
+            high,
+            warnings: sfm.warnings.iter().map(ToString::to_string).collect(),
+            ..Inspection::of(path, InputKind::Reconstruction, if is_colmap { "COLMAP" } else { "PLY" })
+        }
+    }
+
+    /// What positions of photographs say.
+    pub fn of_positions(path: &Path, kind: InputKind, file: &PositionsFile) -> Inspection {
+        let places = file.positions.iter().filter_map(|p| {
+            let [east, north] = p.east_north?;
+            Some(Vector3::new(east, north, p.height_m.unwrap_or(0.0)))
+        });
+        let (low, high) = extent(places).unzip();
+        Inspection {
+            images: Some(file.positions.len()),
+            crs: crs_of(&file.frame),
+            low,
+            high,
+            warnings: file.warnings.clone(),
+            ..Inspection::of(path, kind, file.format)
+        }
+    }
+
+    /// What control points say.
+    pub fn of_points(path: &Path, file: &ControlFile) -> Inspection {
+        let places = file.points.iter().map(|p| Vector3::new(p.east_north[0], p.east_north[1], p.height_m));
+        let (low, high) = extent(places).unzip();
+        let sights = |sight: &PointSight| if let PointSight::In(sights) = sight { sights.len() } else { 0 };
+        let observations = file.points.iter().map(|p| sights(&p.sight)).sum();
+        Inspection {
+            points: Some(file.points.len()),
+            observations: Some(observations).filter(|count| *count > 0),
+            crs: crs_of(&file.frame),
+            low,
+            high,
+            ..Inspection::of(path, InputKind::Points, file.format)
+        }
+    }
+}
+
+/// Corners of the box about all places.
+fn extent(places: impl Iterator<Item = Vector3<f64>>) -> Option<([f64; 3], [f64; 3])> {
+    let corners = places.fold(None, |corners: Option<(Vector3<f64>, Vector3<f64>)>, p| {
+        Some(corners.map_or((p, p), |(low, high)| (low.inf(&p), high.sup(&p))))
+    });
+    corners.map(|(low, high)| (low.into(), high.into()))
+}
+
+fn crs_of(frame: &Frame) -> Option<InspectedCrs> {
+    let named = |text: String, epsg| Some(InspectedCrs { text, epsg, vertical: None });
+    match frame {
+        Frame::OfTheCity => None,
+        Frame::Epsg(code) => named(format!("EPSG:{code}"), Some(*code)),
+        Frame::Proj(text) => named(text.clone(), None),
+        Frame::Tangent { latitude_deg, longitude_deg, .. } => {
+            named(format!("east, north, up at {latitude_deg}, {longitude_deg} (WGS 84)"), None)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(name: &str, content: &str) -> Result<serde_json::Value, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        let found = inspect(&path).map_err(|error| error.to_string())?;
+        Ok(serde_json::to_value(found).unwrap())
+    }
+
+    #[test]
+    fn every_kind_of_input_is_told_by_its_content_whatever_its_name() {
+        let cloud = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n4 5 6\n";
+        for (content, kind, format) in [
+            ("o house\nv 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n", "city", "OBJ"),
+            (cloud, "reconstruction", "PLY"),
+            ("p001.jpg 1 2 3\np002.jpg 40 5 6\n", "positions", "name X Y Z"),
+            ("EPSG:28992\n1 2 3 4 5 a.jpg g\n1 2 3 4 5 b.jpg g\n", "points", "control points in photographs"),
+            ("1 2 3 4 5 6 0.03 g1\n", "points", "control points"),
+        ] {
+            let found = told("input.dat", content).unwrap();
+            assert_eq!((found["kind"].as_str(), found["format"].as_str()), (Some(kind), Some(format)), "{found}");
+        }
+    }
+
+    #[test]
+    fn extents_are_absolute_and_what_makes_no_sense_is_absent() {
+        let found = told("a.obj", "v 90000 0 0\nv 90010 0 0\nv 90000 0 7\nf 1 2 3\n").unwrap();
+        assert_eq!(
+            (&found["low"], &found["high"]),
+            (&serde_json::json!([90000.0, 0.0, 0.0]), &serde_json::json!([90010.0, 0.0, 7.0]))
+        );
+        assert_eq!((found["triangles"].as_u64(), found["objects"].as_u64()), (Some(1), Some(1)));
+        assert!(found.get("images").is_none() && found.get("polygons").is_none() && found["warnings"].is_array());
+        let found = told("a.txt", "EPSG:28992\na.jpg 1 2 3 0 0 0 3 6\n").unwrap();
+        assert_eq!((found["crs"]["epsg"].as_u64(), found["images"].as_u64()), (Some(28992), Some(1)));
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_told_by_the_reader_that_knows_it() {
+        for (name, content, says) in [
+            ("a.obj", "v 0 0 0\n", "no faces"),
+            ("a.ply", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nend_header\n", "a.ply"),
+            ("a.txt", "hello there\n", "name"),
+            ("a.gml", "<CityModel/>", "XML"),
+        ] {
+            let message = told(name, content).unwrap_err();
+            assert!(message.contains(says) && message.contains(name), "{message}");
+        }
+    }
+}

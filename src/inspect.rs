@@ -4,16 +4,13 @@
 //! same fields. A new format of a city or a reconstruction needs nothing here but a name.
 
 use std::collections::BTreeMap;
-use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::city::{CityError, CityModel, CityOptions, read_city};
+use crate::city::{CityContents, CityError, CityModel, CityOptions, Crs, read_city, read_city_contents};
 use crate::error::Error;
 use crate::format::control::{ControlFile, PointSight, read_control_points};
-use crate::format::file::open_regular;
-use crate::format::gltf::is_glb;
 use crate::format::positions::{Frame, PositionsFile, read_positions};
 use crate::geometry::{Point3, Vector3};
 use crate::limits::Limits;
@@ -82,6 +79,12 @@ pub struct InspectedCrs {
     pub vertical: Option<String>,
 }
 
+impl InspectedCrs {
+    fn of(crs: &Crs) -> InspectedCrs {
+        InspectedCrs { text: crs.text.clone(), epsg: crs.epsg, vertical: crs.vertical.clone() }
+    }
+}
+
 /// Looks at a path, by content.
 pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     if path.is_dir() {
@@ -95,8 +98,8 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     if !matches!(no_reconstruction, ReconstructionError::NotAReconstruction { .. }) {
         return Err(no_reconstruction.into());
     }
-    let no_city = match read_city(path, &[], &CityOptions::default()) {
-        Ok(city) => return Ok(Inspection::of_city(path, city_format(path), &city)),
+    let no_city = match read_city_contents(&[path.to_owned()]) {
+        Ok(contents) => return Ok(Inspection::of_city(path, &contents)),
         Err(error) => error,
     };
     if let Ok(points) = read_control_points(path) {
@@ -110,28 +113,21 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     }
 }
 
-/// A folder holds a model, or else photographs.
+/// A folder holds a reconstruction, or else the tiles of a city, or else photographs.
 fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
     let no_model = match read_reconstruction(path) {
         Ok(sfm) => return Ok(Inspection::of_reconstruction(path, &sfm)),
         Err(error) => error,
     };
-    match read_positions(path) {
-        Ok(positions) if matches!(no_model, ReconstructionError::NotAReconstruction { .. }) => {
-            Ok(Inspection::of_positions(path, InputKind::Photographs, &positions))
-        }
-        _ => Err(no_model.into()),
+    if !matches!(no_model, ReconstructionError::NotAReconstruction { .. }) {
+        return Err(no_model.into());
     }
-}
-
-fn city_format(path: &Path) -> &'static str {
-    let mut start = [0; 64];
-    let read = open_regular(path).and_then(|mut file| file.read(&mut start)).unwrap_or(0);
-    let start = &start[..read];
-    match start {
-        _ if is_glb(start) => "GLB 2.0",
-        _ if String::from_utf8_lossy(start).trim_start_matches('\u{feff}').trim_start().starts_with('{') => "glTF 2.0",
-        _ => "OBJ",
+    if let Ok(contents) = read_city_contents(&[path.to_owned()]) {
+        return Ok(Inspection::of_city(path, &contents));
+    }
+    match read_positions(path) {
+        Ok(positions) => Ok(Inspection::of_positions(path, InputKind::Photographs, &positions)),
+        Err(_) => Err(no_model.into()),
     }
 }
 
@@ -140,34 +136,52 @@ impl Inspection {
         Inspection { path: path.to_string_lossy().into_owned(), kind, format: format.into(), ..Inspection::default() }
     }
 
-    /// What a city model holds.
-    pub fn of_city(path: &Path, format: &str, city: &CityModel) -> Inspection {
-        let absolute = |p: Point3<f64>| (p + city.origin).into();
-        Inspection {
-            objects: Some(city.objects.len()),
-            triangles: Some(city.triangles.len()),
-            low: city.bounds().map(|(low, _)| absolute(low)),
-            high: city.bounds().map(|(_, high)| absolute(high)),
-            warnings: city.warnings.iter().map(ToString::to_string).collect(),
-            ..Inspection::of(path, InputKind::City, format)
+    /// What the files of a city hold, and the model that is made of them where one can be made.
+    fn of_city(path: &Path, contents: &[(PathBuf, CityContents)]) -> Inspection {
+        let format = contents.first().map_or("", |(_, first)| first.format.as_str());
+        let mut found = Inspection::of(path, InputKind::City, format);
+        let sum = |of: fn(&CityContents) -> usize| Some(contents.iter().map(|(_, file)| of(file)).sum());
+        found.objects = sum(|file| file.objects);
+        found.parts = sum(|file| file.parts);
+        found.holes = sum(|file| file.holes);
+        for (lod, counts) in contents.iter().flat_map(|(_, file)| &file.polygons) {
+            let level = found.polygons.entry(lod.map_or("unsaid".to_owned(), |lod| lod.to_string())).or_default();
+            for (kind, count) in counts.named().filter(|(_, count)| *count > 0) {
+                *level.entry(kind.to_owned()).or_default() += count;
+            }
         }
+        found.crs = contents.iter().find_map(|(_, file)| file.crs.as_ref()).map(InspectedCrs::of);
+        match read_city(path, &[], &CityOptions::default()) {
+            Ok(city) => found.add_model(&city),
+            Err(error) => found.warnings.push(format!("nothing to align with: {error}")),
+        }
+        found
+    }
+
+    fn add_model(&mut self, city: &CityModel) {
+        let absolute = |p: Point3<f64>| (p + city.origin).into();
+        self.triangles = Some(city.triangles.len());
+        self.low = city.bounds().map(|(low, _)| absolute(low));
+        self.high = city.bounds().map(|(_, high)| absolute(high));
+        self.warnings = city.warnings.iter().map(ToString::to_string).collect();
     }
 
     /// What a reconstruction holds.
     pub fn of_reconstruction(path: &Path, sfm: &Reconstruction) -> Inspection {
-        let is_colmap = sfm.colmap.is_some();
+        let has_images = !sfm.images.is_empty();
         let rotations: Vec<_> = sfm.images.iter().map(|image| image.cam_from_sfm_rotation).collect();
         let up = (!rotations.is_empty()).then(|| up_of_cameras(&rotations, &Limits::default())).unwrap_or_default();
         let (low, high) = extent(sfm.points.iter().map(|p| p.coords)).unzip();
         Inspection {
-            images: Some(sfm.images.len()).filter(|_| is_colmap),
+            images: Some(sfm.images.len()).filter(|_| has_images),
             points: Some(sfm.points.len()),
-            observations: Some(sfm.track_elements.len()).filter(|_| is_colmap),
+            observations: Some(sfm.track_elements.len()).filter(|_| has_images),
             up_guess: up.first().map(|candidate| candidate.up.into()),
             low,
             high,
             warnings: sfm.warnings.iter().map(ToString::to_string).collect(),
-            ..Inspection::of(path, InputKind::Reconstruction, if is_colmap { "COLMAP" } else { "PLY" })
+            crs: sfm.crs.as_ref().map(|crs| InspectedCrs { text: crs.text.clone(), epsg: crs.epsg, vertical: None }),
+            ..Inspection::of(path, InputKind::Reconstruction, &sfm.format.to_string())
         }
     }
 

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::format::control::{ControlFile, PointSight, read_control_points};
 use crate::format::file::open_regular;
 use crate::format::gltf::is_glb;
-use crate::format::positions::{Frame, PositionsFile, read_positions};
+use crate::format::positions::{Frame, PositionsFile, photographs_in, read_positions};
 use crate::geometry::{Point3, Vector3};
 use crate::limits::Limits;
 use crate::planes::up_of_cameras;
@@ -116,12 +116,18 @@ fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
         Ok(sfm) => return Ok(Inspection::of_reconstruction(path, &sfm)),
         Err(error) => error,
     };
-    match read_positions(path) {
-        Ok(positions) if matches!(no_model, ReconstructionError::NotAReconstruction { .. }) => {
-            Ok(Inspection::of_positions(path, InputKind::Photographs, &positions))
-        }
-        _ => Err(no_model.into()),
+    let photographs = photographs_in(path).map_or(0, |found| found.len());
+    if photographs == 0 || !matches!(no_model, ReconstructionError::NotAReconstruction { .. }) {
+        return Err(no_model.into());
     }
+    let seen = match read_positions(path) {
+        Ok(positions) => Inspection::of_positions(path, InputKind::Photographs, &positions),
+        Err(error) => Inspection {
+            warnings: vec![error.to_string()],
+            ..Inspection::of(path, InputKind::Photographs, "photographs without positions")
+        },
+    };
+    Ok(Inspection { images: Some(photographs), ..seen })
 }
 
 fn city_format(path: &Path) -> &'static str {
@@ -250,6 +256,16 @@ mod tests {
             let found = told("input.dat", content).unwrap();
             assert_eq!((found["kind"].as_str(), found["format"].as_str()), (Some(kind), Some(format)), "{found}");
         }
+    }
+
+    #[test]
+    fn photographs_are_counted_whether_or_not_they_say_where_they_were_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(inspect(folder.path()).unwrap_err().to_string().contains("expected a folder with cameras"));
+        std::fs::write(folder.path().join("a.jpg"), [0xFF, 0xD8]).unwrap();
+        let found = inspect(folder.path()).unwrap();
+        assert_eq!((found.kind, found.images), (InputKind::Photographs, Some(1)));
+        assert!(found.warnings[0].contains("says where it was taken"), "{:?}", found.warnings);
     }
 
     #[test]

@@ -10,7 +10,8 @@
 
 use super::GeoreferenceError;
 use super::estimate::Estimate;
-use super::heights::{middle, reading};
+use super::extent::middle;
+use super::heights::reading;
 use super::level::{Levelled, levelled};
 use super::level_fit::{Couple, LevelFit, level_fit};
 use super::matched::{LEAST_POSITIONS, Matched, matched};

@@ -22,3 +22,14 @@ fn a_scale_is_positive_and_finite() {
         assert!(wrong.parse::<Scale>().is_err(), "{wrong}");
     }
 }
+
+#[test]
+fn a_coordinate_system_is_a_code_or_two() {
+    let crs = |text: &str| text.parse::<CrsArg>();
+    assert_eq!(crs("EPSG:28992"), Ok(CrsArg { horizontal: 28992, vertical: None }));
+    assert_eq!(crs(" epsg:25832+7837 "), Ok(CrsArg { horizontal: 25832, vertical: Some(7837) }));
+    assert_eq!(crs("7415"), Ok(CrsArg { horizontal: 7415, vertical: None }));
+    for wrong in ["", "EPSG:", "RD", "EPSG:28992+", "EPSG:-1", "EPSG:1.5", "é", "EPSé:28992"] {
+        assert!(crs(wrong).unwrap_err().contains("EPSG:28992"), "{wrong}");
+    }
+}

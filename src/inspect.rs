@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::city::{CityContents, CityError, CityModel, CityOptions, Crs, read_city, read_city_contents};
 use crate::error::Error;
 use crate::format::control::{ControlFile, PointSight, read_control_points};
-use crate::format::positions::{Frame, PositionsFile, read_positions};
+use crate::format::positions::{Frame, PositionsFile, photographs_in, read_positions};
 use crate::geometry::{Point3, Vector3};
 use crate::limits::Limits;
 use crate::planes::up_of_cameras;
@@ -125,10 +125,18 @@ fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
     if let Ok(contents) = read_city_contents(&[path.to_owned()]) {
         return Ok(Inspection::of_city(path, &contents));
     }
-    match read_positions(path) {
-        Ok(positions) => Ok(Inspection::of_positions(path, InputKind::Photographs, &positions)),
-        Err(_) => Err(no_model.into()),
+    let photographs = photographs_in(path).map_or(0, |found| found.len());
+    if photographs == 0 {
+        return Err(no_model.into());
     }
+    let seen = match read_positions(path) {
+        Ok(positions) => Inspection::of_positions(path, InputKind::Photographs, &positions),
+        Err(error) => Inspection {
+            warnings: vec![error.to_string()],
+            ..Inspection::of(path, InputKind::Photographs, "photographs without positions")
+        },
+    };
+    Ok(Inspection { images: Some(photographs), ..seen })
 }
 
 impl Inspection {
@@ -264,6 +272,16 @@ mod tests {
             let found = told("input.dat", content).unwrap();
             assert_eq!((found["kind"].as_str(), found["format"].as_str()), (Some(kind), Some(format)), "{found}");
         }
+    }
+
+    #[test]
+    fn photographs_are_counted_whether_or_not_they_say_where_they_were_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(inspect(folder.path()).unwrap_err().to_string().contains("expected a folder with cameras"));
+        std::fs::write(folder.path().join("a.jpg"), [0xFF, 0xD8]).unwrap();
+        let found = inspect(folder.path()).unwrap();
+        assert_eq!((found.kind, found.images), (InputKind::Photographs, Some(1)));
+        assert!(found.warnings[0].contains("says where it was taken"), "{:?}", found.warnings);
     }
 
     #[test]

@@ -100,7 +100,9 @@ pub struct Common {
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  \
     cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
-    cityweld align city.glb cloud.ply --terrain ground.obj --start start.json -o out\n\n\
+    cityweld align city.glb cloud.ply --terrain ground.obj --start start.json -o out\n  \
+    cityweld align city.obj sfm/ --positions photos/ --crs EPSG:28992 -o out\n  \
+    cityweld align city.obj sfm/ --positions geo.txt --points gcp_list.txt --crs EPSG:28992 --dry-run\n\n\
     A start file:\n  \
     {\"scale\": 12.5, \"rotation\": [[1,0,0],[0,1,0],[0,0,1]], \"translation\": [100, 200, 3],\n   \
     \"position_sigma\": 10, \"height_sigma\": 3, \"rotation_sigma_deg\": 10, \"tilt_sigma_deg\": 2, \"scale_sigma\": 0.15}\n\n\
@@ -118,7 +120,8 @@ pub struct AlignArgs {
     /// Folder to make; must not exist (see --force)
     #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
     pub output: Option<PathBuf>,
-    /// Coarse place of the reconstruction, JSON (see below), or the alignment.json of an earlier run
+    /// Coarse place of the reconstruction: JSON (see below), a matrix of 4 x 4 as text, or the alignment.json of an earlier run. Several
+    /// of --start, --positions and --points must agree within four sigmas, and are averaged
     #[arg(long, value_name = "FILE")]
     pub start: Option<PathBuf>,
     /// Where the photographs were taken: a folder of photographs (EXIF GPS), database.db of COLMAP, reconstruction.json of OpenSfM, geo.txt
@@ -164,12 +167,13 @@ pub struct AlignArgs {
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  \
     cityweld merge part_a part_b -o out\n  \
+    cityweld merge colmap/sparse -o out\n  \
     cityweld merge part_a part_b part_c --photos photos/ -o out\n  \
     cityweld merge part_a part_b --city city.obj --start a.json --start b.json -o out\n\n\
     Exit status: 0 all parts are merged; 1 any other verdict (merge.json says why).")]
 pub struct MergeArgs {
-    /// Partial reconstructions, at least two: COLMAP folders, clouds, or what other tools wrote
-    #[arg(value_name = "PART", num_args = 2.., required = true)]
+    /// Partial reconstructions (COLMAP folders, clouds, what other tools wrote): two or more, or one folder that holds them
+    #[arg(value_name = "PART", num_args = 1.., required = true)]
     pub parts: Vec<PathBuf>,
     /// Folder to make; must not exist (see --force)
     #[arg(short, long, value_name = "OUT")]
@@ -190,6 +194,9 @@ pub struct MergeArgs {
     /// Coarse place of a part in the city, JSON (see `align --help`), or its alignment.json; once for every part, in their order
     #[arg(long, value_name = "FILE")]
     pub start: Vec<PathBuf>,
+    /// Probability of a wrong place called right that may be taken, of a part in the city as well as between parts; above 0 and below 1
+    #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
+    pub false_alarm: Probability,
     #[command(flatten)]
     pub city_options: CityArgs,
 }

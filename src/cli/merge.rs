@@ -13,11 +13,13 @@ use crate::reconstruction::read_reconstruction;
 use anyhow::{Result, ensure};
 
 use super::args::{EvidenceArg, MergeArgs};
+use super::parts::parts;
 use super::plan::{CityFiles, existing_reconstruction, keeps_inputs};
 use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
 
 pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
+    let args = &MergeArgs { parts: parts(&args.parts)?, ..args.clone() };
     check(args)?;
     let output = session.begin(&args.output, OutputKind::Folder)?;
     let voice = &session.voice;
@@ -26,7 +28,8 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
         EvidenceArg::All => PairSources::All,
         EvidenceArg::Planes => PairSources::Planes,
     };
-    let join = JoinOptions { seed: session.common.seed, sources, ..JoinOptions::default() };
+    let mut join = JoinOptions { seed: session.common.seed, sources, ..JoinOptions::default() };
+    join.limits.verdict.false_alarm = args.false_alarm.0;
     let options = MergeOptions { superpixels: superpixel_source(args), join };
     // The parts go before the files are written: a model is as large as they are.
     let merged = merge(read_parts(args, session)?, city.as_ref(), &options, voice)?;

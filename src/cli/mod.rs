@@ -8,6 +8,7 @@ mod export;
 mod inspect;
 mod interrupt;
 mod merge;
+mod parts;
 mod place;
 mod plan;
 mod planes;

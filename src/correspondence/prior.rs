@@ -79,7 +79,7 @@ impl Prior {
             center_in_city,
             motion,
             vertical,
-            sigmas: bounded(&at_least(start.sigmas(), limits.plane_sigma_m, radius_m), &center_in_city, city),
+            sigmas: bounded(&start.sigmas().at_least(limits.plane_sigma_m, radius_m), &center_in_city, city),
             reach_sigmas: limits.reach_sigmas,
             cost_of_sigma_sq: limits.prior_cost,
             least_tilt_rad: limits.least_tilt_rad,
@@ -189,18 +189,6 @@ impl Prior {
 /// The turn about up that is nearest to a rotation, radians.
 pub fn heading_of(rotation: &Matrix3<f64>) -> f64 {
     (rotation[(1, 0)] - rotation[(0, 1)]).atan2(rotation[(0, 0)] + rotation[(1, 1)])
-}
-
-/// The sigmas, none smaller than a length at the scene's radius.
-fn at_least(sigmas: &StartSigmas, length_m: f64, radius_m: f64) -> StartSigmas {
-    let share = length_m / radius_m.max(length_m);
-    StartSigmas {
-        position_m: sigmas.position_m.max(length_m),
-        height_m: sigmas.height_m.max(length_m),
-        heading_rad: sigmas.heading_rad.max(share),
-        tilt_rad: sigmas.tilt_rad.max(share),
-        log_scale: sigmas.log_scale.max(share),
-    }
 }
 
 /// Where one sigma covers the whole city a larger one says no more, and would only spread the samples.

@@ -10,11 +10,7 @@ use super::alignment::{Spread, StoredAlignment, parse_alignment};
 use super::json_kind::JsonKind;
 use super::matrix::{looks_like_matrix, parse_matrix};
 use super::placement::{PlacementError, SimilarityRecord, parse_json, read_named};
-use crate::geometry::{Start, StartError, StartSigmas};
-
-/// An earlier alignment is believed to this at most, metres at the scene's radius: what the verdict calls determined. Its
-/// sigmas say how far noise may have moved it, and here better data shall be able to say something else.
-const SMALLEST_SPREAD_M: f64 = 0.35;
+use crate::geometry::{LEAST_SPREAD_M, Start, StartError, StartSigmas};
 
 const EXPECTED: &str = "{\"scale\": s, \"rotation\": [[..],[..],[..]], \"translation\": [x, y, z]} and, where wanted, \
                         position_sigma, height_sigma, rotation_sigma_deg, tilt_sigma_deg, scale_sigma";
@@ -84,15 +80,7 @@ fn start_from(stored: &StoredAlignment) -> Result<Start, StartError> {
     let Some(Spread { radius_m, sigmas }) = stored.spread.filter(|_| stored.verdict != "ambiguous") else {
         return Ok(Start::with_default_sigmas(stored.city_from_sfm));
     };
-    let smallest_angle = SMALLEST_SPREAD_M / radius_m;
-    let sigmas = StartSigmas {
-        position_m: sigmas.position_m.max(SMALLEST_SPREAD_M),
-        height_m: sigmas.height_m.max(SMALLEST_SPREAD_M),
-        heading_rad: sigmas.heading_rad.max(smallest_angle),
-        tilt_rad: sigmas.tilt_rad.max(smallest_angle),
-        log_scale: sigmas.log_scale.max(smallest_angle),
-    };
-    Start::new(stored.city_from_sfm, sigmas)
+    Start::new(stored.city_from_sfm, sigmas.at_least(LEAST_SPREAD_M, radius_m))
 }
 
 fn at(path: &Path) -> impl Fn(StartError) -> PlacementError {

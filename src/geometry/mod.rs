@@ -23,7 +23,7 @@ pub use plane::{Plane, distance_derivative};
 pub use rays::RayCaster;
 pub use rotation::{nearest_rotation, orthonormalised};
 pub use similarity::{NotASimilarity, Similarity};
-pub use start::{Start, StartError, StartSigmas};
+pub use start::{LEAST_SPREAD_M, Start, StartError, StartSigmas};
 pub use umeyama::umeyama;
 
 pub use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};

@@ -57,6 +57,24 @@ impl Default for StartSigmas {
     }
 }
 
+/// No source is believed better than this, metres at the scene's radius: what a verdict calls determined. A city model stands off its own
+/// coordinate system by decimetres, and better data shall be able to say something else than an earlier result.
+pub const LEAST_SPREAD_M: f64 = 0.35;
+
+impl StartSigmas {
+    /// None smaller than a length at the scene's radius.
+    pub fn at_least(&self, length_m: f64, radius_m: f64) -> StartSigmas {
+        let share = length_m / radius_m.max(length_m);
+        StartSigmas {
+            position_m: self.position_m.max(length_m),
+            height_m: self.height_m.max(length_m),
+            heading_rad: self.heading_rad.max(share),
+            tilt_rad: self.tilt_rad.max(share),
+            log_scale: self.log_scale.max(share),
+        }
+    }
+}
+
 impl Start {
     /// A start with checked sigmas. Zero becomes a tenth of a millimetre (or of a milliradian); an angle beyond pi says no
     /// more than pi.
@@ -137,6 +155,16 @@ mod tests {
             let message = with(change).unwrap_err().to_string();
             assert!(message.starts_with(name), "{message}");
         }
+    }
+
+    #[test]
+    fn a_least_length_is_felt_at_the_radius_by_angles_and_scale() {
+        let fine = StartSigmas { position_m: 0.01, height_m: 2.0, heading_rad: 0.0, tilt_rad: 0.1, log_scale: 1e-4 };
+        let widened = fine.at_least(0.35, 70.0);
+        assert_eq!((widened.position_m, widened.height_m), (0.35, 2.0));
+        assert_eq!([widened.heading_rad, widened.tilt_rad, widened.log_scale], [0.005, 0.1, 0.005]);
+        // A scene without extent is not divided by.
+        assert_eq!(fine.at_least(0.35, 0.0).heading_rad, 1.0);
     }
 
     #[test]

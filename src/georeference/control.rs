@@ -9,7 +9,8 @@
 
 use super::GeoreferenceError;
 use super::estimate::{ControlPoint, ControlUse, Estimate};
-use super::heights::{middle, reading};
+use super::extent::{middle, radius};
+use super::heights::reading;
 use super::names::PhotographNames;
 use super::point_fit::{PointCouple, PointFit, point_fit};
 use super::projection::ToCity;
@@ -17,7 +18,7 @@ use super::rays::{Sightline, intersection};
 use crate::city::CityModel;
 use crate::format::control::{ControlFile, PointRole, PointSight, StoredPoint};
 use crate::format::positions::Frame;
-use crate::geometry::{Point3, Similarity, Start, StartSigmas, Vector3};
+use crate::geometry::{LEAST_SPREAD_M, Point3, Similarity, Start, StartSigmas, Vector3};
 use crate::reconstruction::Reconstruction;
 
 /// Sigma of a point whose file does not say it, metres. Chosen: a corner that was picked in a model and in a cloud.
@@ -56,7 +57,9 @@ pub fn from_control_points(
     let wrong: Vec<usize> = (0..used.len()).filter(|k| !fit.believed.contains(k)).map(|k| used[k]).collect();
     wrong.iter().for_each(|&i| points[i].use_of = ControlUse::LeftOut);
     let pose = Similarity { translation: fit.city_from_sfm.translation + shift, ..fit.city_from_sfm };
-    let start = Start::new(pose, sigmas(&fit, heights.is_foreign));
+    let radius_m = pose.scale * radius(&sfm.points, &middle);
+    let sigmas = sigmas(&fit, heights.is_foreign).at_least(LEAST_SPREAD_M, radius_m);
+    let start = Start::new(pose, sigmas);
     let start = start.map_err(|error| GeoreferenceError::Start { source_name: source_name.into(), error })?;
     let source = format!(
         "{} {} ({source_name}{}), {:.3} m about them",

@@ -1,6 +1,6 @@
 //! What every source becomes.
 
-use super::heights::middle;
+use super::extent::middle;
 use crate::geometry::{Point3, Start};
 
 /// Where a source says that a reconstruction stands.

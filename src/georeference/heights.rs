@@ -4,6 +4,7 @@
 //! Between the two lies the geoid, up to 100 m. City models stand on heights above the sea. Where the two readings are far apart, that one
 //! is taken under which the foot of the cloud lies nearer to the city's.
 
+use super::extent::middle;
 use super::projection::ToCity;
 use crate::city::CityModel;
 use crate::geometry::{Point3, Similarity};
@@ -70,13 +71,4 @@ fn city_foot(city: &CityModel, place: &Point3<f64>) -> Option<f64> {
         heights = city.vertices.iter().map(|v| v.z).collect();
     }
     quantile(&mut heights, FOOT)
-}
-
-/// The median of each coordinate.
-pub(super) fn middle(points: &[Point3<f64>]) -> Point3<f64> {
-    let of = |k: usize| {
-        let mut values: Vec<f64> = points.iter().map(|p| p[k]).collect();
-        quantile(&mut values, 0.5).unwrap_or(0.0)
-    };
-    Point3::new(of(0), of(1), of(2))
 }

@@ -114,3 +114,68 @@ fn noise(of: &[usize], residuals: impl Iterator<Item = f64>) -> f64 {
     let squares: f64 = of.iter().map(|&i| all[i] * all[i]).sum();
     (squares / (2.0 * of.len() as f64 - 4.0).max(1.0)).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Couples under a heading of a radian, scale 3 and a shift of (10, 20, 5).
+    fn couples(count: usize) -> Vec<Couple> {
+        let couple = |i: usize| {
+            let t = i as f64;
+            let level = Point3::new(4.0 * (t * 0.8).sin() + 0.3 * t, 5.0 * (t * 1.1).cos(), 0.2 * t);
+            let turned = Planar::from_polar(3.0, 1.0) * Planar::new(level.x, level.y) + Planar::new(10.0, 20.0);
+            Couple { level, east_north: [turned.re, turned.im], height_m: Some(3.0 * level.z + 5.0) }
+        };
+        (0..count).map(couple).collect()
+    }
+
+    #[test]
+    fn two_couples_fix_it_and_more_leave_no_residual() {
+        for count in [2, 3, 24, 200] {
+            let fit = level_fit(&couples(count)).unwrap();
+            assert!((fit.scale - 3.0).abs() < 1e-9 && (fit.heading_rad - 1.0).abs() < 1e-9, "{count}: {fit:?}");
+            assert!((fit.shift - Vector3::new(10.0, 20.0, 5.0)).norm() < 1e-8 && fit.noise_m < 1e-9);
+            assert_eq!(fit.believed.len(), count);
+        }
+    }
+
+    #[test]
+    fn wrong_couples_are_not_believed_as_long_as_they_are_fewer_than_half() {
+        let mut wrong = couples(25);
+        for (k, couple) in wrong.iter_mut().enumerate().filter(|(k, _)| k % 5 < 2) {
+            couple.east_north[0] += 30.0 + 7.0 * k as f64;
+        }
+        let fit = level_fit(&wrong).unwrap();
+        assert!((fit.scale - 3.0).abs() < 1e-6 && fit.believed.len() == 15, "{fit:?}");
+    }
+
+    #[test]
+    fn one_height_that_is_wrong_moves_nothing_and_some_may_be_missing() {
+        let mut some = couples(9);
+        (some[2].height_m, some[5].height_m, some[6].height_m) = (Some(1000.0), None, None);
+        assert!((level_fit(&some).unwrap().shift.z - 5.0).abs() < 1e-9);
+        some.iter_mut().for_each(|couple| couple.height_m = None);
+        assert!(level_fit(&some).is_none());
+    }
+
+    #[test]
+    fn couples_at_one_place_fix_nothing() {
+        let one = couples(1)[0];
+        assert!(level_fit(&[one; 5]).is_none() && level_fit(&[one]).is_none() && level_fit(&[]).is_none());
+    }
+
+    #[test]
+    fn the_noise_is_that_of_a_position_on_each_axis() {
+        let mut random = crate::robust::Random::stream(4, 0);
+        let mut noisy = couples(400);
+        for couple in &mut noisy {
+            // Uniform within a metre and a half: 0.866 m of each axis.
+            couple.east_north = couple.east_north.map(|v| v + 3.0 * (random.unit() - 0.5));
+        }
+        let fit = level_fit(&noisy).unwrap();
+        assert!((fit.noise_m - 0.866).abs() < 0.05, "{}", fit.noise_m);
+        assert_eq!(pairs(3).collect::<Vec<_>>(), [(0, 1), (0, 2), (1, 2)]);
+        assert!(pairs(1000).count() <= MOST_PAIRS);
+    }
+}

@@ -8,6 +8,7 @@ mod agree;
 mod control;
 mod error;
 mod estimate;
+mod extent;
 mod heights;
 mod level;
 mod level_fit;

@@ -120,3 +120,70 @@ fn moved(pose: &Similarity, middle: &Point3<f64>, step: &SVector<f64, 7>) -> Sim
     let image = pose.apply(middle) + step.fixed_rows::<3>(3).into_owned();
     Similarity::about(middle, &image, pose.scale * step[6].exp(), turn * pose.rotation)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn truth() -> Similarity {
+        let rotation = Rotation3::from_euler_angles(0.4, 2.0, -1.0);
+        Similarity { scale: 1.7, rotation, translation: Vector3::new(3.0, -8.0, 1.0) }
+    }
+
+    fn couples(count: usize, noise_m: f64, seed: u64) -> Vec<PointCouple> {
+        let mut random = crate::robust::Random::stream(seed, 0);
+        let mut gaussian =
+            || (-2.0 * (1.0 - random.unit()).ln()).sqrt() * (std::f64::consts::TAU * random.unit()).cos();
+        let couple = |i: usize| {
+            let t = i as f64;
+            let in_sfm = Point3::new(40.0 * (t * 0.7).sin(), 30.0 * (t * 1.3).cos(), 20.0 * (t * 0.31 + 1.0).sin());
+            let noise = Vector3::new(gaussian(), gaussian(), gaussian()) * noise_m;
+            PointCouple { in_sfm, in_city: truth().apply(&in_sfm) + noise, sigma_m: 0.1 }
+        };
+        (0..count).map(couple).collect()
+    }
+
+    #[test]
+    fn the_sigmas_are_those_of_the_errors() {
+        // Many draws: the mean square of each error over its variance is one.
+        let (draws, middle) = (200, Point3::new(5.0, -5.0, 5.0));
+        let mut squares = [0.0; 5];
+        for seed in 0..draws {
+            let fit = point_fit(&couples(12, 0.1, seed), &middle).unwrap();
+            let (s, pose) = (fit.sigmas, fit.city_from_sfm);
+            let shift = pose.apply(&middle) - truth().apply(&middle);
+            let turn = (pose.rotation * truth().rotation.inverse()).scaled_axis();
+            let errors = [
+                shift.x / s.position_m,
+                shift.z / s.height_m,
+                turn.z / s.heading_rad,
+                turn.x / s.tilt_rad,
+                (pose.scale / truth().scale).ln() / s.log_scale,
+            ];
+            squares.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error * error / draws as f64);
+        }
+        // Residuals below the stated sigmas do not narrow them, and the worse of two axes is told.
+        assert!(squares.iter().all(|square| (0.4..1.3).contains(square)), "{squares:?}");
+    }
+
+    #[test]
+    fn a_point_counts_by_its_sigma() {
+        let mut uneven = couples(4, 0.0, 1);
+        uneven[3].in_city.x += 1.0;
+        uneven[3].sigma_m = 100.0;
+        let fit = point_fit(&uneven, &Point3::origin()).unwrap();
+        let off = (fit.city_from_sfm.apply(&uneven[0].in_sfm) - uneven[0].in_city).norm();
+        assert!(off < 1e-4 && fit.believed.len() == 4, "{off}");
+    }
+
+    #[test]
+    fn too_few_points_and_points_on_a_line_fix_nothing() {
+        assert!(point_fit(&couples(2, 0.0, 1), &Point3::origin()).is_none());
+        let mut line = couples(6, 0.0, 1);
+        for (k, couple) in line.iter_mut().enumerate() {
+            couple.in_sfm = Point3::new(k as f64, 2.0 * k as f64, 0.0);
+            couple.in_city = truth().apply(&couple.in_sfm);
+        }
+        assert!(point_fit(&line, &Point3::origin()).is_none());
+    }
+}

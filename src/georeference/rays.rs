@@ -109,3 +109,50 @@ fn nearest(rays: &[Sightline]) -> Option<(Point3<f64>, f64)> {
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ray(origin: [f64; 3], to: [f64; 3]) -> Sightline {
+        let origin = Point3::from(origin);
+        Sightline { origin, direction: (Point3::from(to) - origin).normalize(), focal_px: 800.0 }
+    }
+
+    const PLACE: [f64; 3] = [1.0, 2.0, 3.0];
+
+    #[test]
+    fn rays_that_meet_give_their_place_and_more_of_them_a_smaller_sigma() {
+        let two = [ray([0.0; 3], PLACE), ray([9.0, 0.0, 0.0], PLACE)];
+        let found = intersection(&two).unwrap();
+        assert!((found.point - Point3::from(PLACE)).norm() < 1e-12 && found.left_out == 0);
+        let four = [two[0], two[1], ray([0.0, 9.0, 0.0], PLACE), ray([9.0, 9.0, 0.0], PLACE)];
+        assert!(intersection(&four).unwrap().sigma < found.sigma);
+    }
+
+    #[test]
+    fn a_ray_to_another_place_is_left_out_where_others_agree() {
+        let mut rays = vec![
+            ray([0.0; 3], PLACE),
+            ray([9.0, 0.0, 0.0], PLACE),
+            ray([0.0, 9.0, 0.0], PLACE),
+            ray([5.0, -5.0, 0.0], [2.0, 2.0, 3.0]),
+        ];
+        let found = intersection(&rays).unwrap();
+        assert!((found.point - Point3::from(PLACE)).norm() < 1e-9 && found.left_out == 1);
+        // Of two that do not meet nobody knows which is wrong.
+        rays.drain(1..3);
+        assert!(intersection(&rays).is_none());
+    }
+
+    #[test]
+    fn nearly_parallel_rays_and_places_behind_a_camera_meet_nowhere() {
+        assert!(intersection(&[ray([0.0; 3], PLACE), ray([0.001, 0.0, 0.0], PLACE)]).is_none());
+        assert!(intersection(&[ray([0.0; 3], PLACE)]).is_none() && intersection(&[]).is_none());
+        let away = |origin: [f64; 3]| {
+            let towards = ray(origin, PLACE);
+            Sightline { direction: -towards.direction, ..towards }
+        };
+        assert!(intersection(&[away([0.0; 3]), away([9.0, 0.0, 0.0])]).is_none());
+    }
+}

@@ -1,16 +1,14 @@
 //! Whether a start can reach the city at all, before anything is searched.
 
+use super::extent::radius;
 use super::{Estimate, GeoreferenceError};
 use crate::city::CityModel;
 use crate::geometry::Point3;
-use crate::robust::quantile;
 
 /// A start that is this many of its sigmas from the city, and the cloud's own radius, cannot reach it.
 const REACH_SIGMAS: f64 = 3.0;
 /// Slack, metres.
 const MARGIN_M: f64 = 10.0;
-/// The share of points that counts as the cloud: some lie anywhere.
-const MOST: f64 = 0.95;
 
 impl Estimate {
     /// Distance from the place of the reconstruction's middle to the nearest facet, metres; an error where nothing within the sigmas leads
@@ -19,8 +17,7 @@ impl Estimate {
         let (pose, sigmas) = (self.start.city_from_sfm(), self.start.sigmas());
         let place = pose.apply(&self.middle);
         let Some(distance_m) = city.distance_to(&(place - city.origin)) else { return Ok(0.0) };
-        let mut offsets: Vec<f64> = points.iter().map(|p| pose.scale * (p - self.middle).norm()).collect();
-        let radius_m = quantile(&mut offsets, MOST).unwrap_or(0.0) * (REACH_SIGMAS * sigmas.log_scale).exp();
+        let radius_m = pose.scale * radius(points, &self.middle) * (REACH_SIGMAS * sigmas.log_scale).exp();
         let reach_m = radius_m + REACH_SIGMAS * sigmas.position_m.hypot(sigmas.height_m) + MARGIN_M;
         if distance_m <= reach_m {
             return Ok(distance_m);

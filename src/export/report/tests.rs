@@ -1,7 +1,8 @@
 use super::super::report_input::{CityCounts, SfmCounts};
 use super::*;
 use crate::city::CityModel;
-use crate::geometry::{Point3, Rotation3, Vector3};
+use crate::geometry::{Point3, Rotation3, Start, Vector3};
+use crate::georeference::ControlPoint;
 use crate::reconstruction::Reconstruction;
 use crate::verdict::{Alternative, FreedomKind, FreedomUnit, SearchSummary};
 use serde_json::{Value, json};
@@ -141,4 +142,37 @@ fn compare(value: &Value, schema: &Value, root: &Value, place: &str) {
             assert!(fits || schema.get("const").is_some() || schema.get("enum").is_some(), "{place}: {allowed}");
         }
     }
+}
+
+#[test]
+fn the_start_that_was_used_is_told_with_its_source_and_the_residuals_of_its_points() {
+    let alignment = example(Verdict::Aligned);
+    let best = alignment.best_candidate.unwrap();
+    let in_sfm = Point3::new(1.0, 2.0, 3.0);
+    let point = |name: &str, use_of| ControlPoint {
+        name: name.into(),
+        use_of,
+        in_sfm,
+        in_city: best.apply(&in_sfm) + Vector3::new(0.0, 0.3, 0.4),
+        sigma_m: 0.02,
+    };
+    let start = Start::with_default_sigmas(best);
+    let points = vec![point("a", ControlUse::Control), point("b", ControlUse::Check), point("c", ControlUse::LeftOut)];
+    let prior = Estimate { points, ..Estimate::given(start, &[in_sfm], "by hand".into()) };
+    let told: Value = serde_json::from_str(
+        &alignment_report(&alignment, &InputSummary { prior: Some(prior.clone()), ..input() }).unwrap(),
+    )
+    .unwrap();
+    assert_eq!((&told["prior"]["source"], &told["prior"]["position_sigma"]), (&json!("by hand"), &json!(10.0)));
+    assert_eq!(told["prior"]["scale"].as_f64(), Some(best.scale));
+    let names = |key: &str| told[key].as_array().unwrap().iter().map(|p| p["name"].clone()).collect::<Vec<_>>();
+    assert_eq!((names("control_points"), names("check_points")), (vec![json!("a"), json!("c")], vec![json!("b")]));
+    assert!((told["check_points"][0]["distance"].as_f64().unwrap() - 0.5).abs() < 1e-9);
+    assert!((told["check_points"][0]["residual"][2].as_f64().unwrap() - 0.4).abs() < 1e-9);
+    let none = Alignment { best_candidate: None, ..example(Verdict::Failed) };
+    let told: Value =
+        serde_json::from_str(&alignment_report(&none, &InputSummary { prior: Some(prior), ..input() }).unwrap())
+            .unwrap();
+    assert!(told["check_points"][0]["distance"].is_null() && told["prior"]["source"] == "by hand");
+    assert!(report(&alignment)["prior"].is_null());
 }

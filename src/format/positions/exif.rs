@@ -25,8 +25,7 @@ const BELOW: [u32; 2] = [1, 3];
 
 /// Reads what the photographs of a folder, and of those in it, say of their places.
 pub(super) fn read(folder: &Path) -> Result<PositionsFile, PositionsError> {
-    let mut photographs = Vec::new();
-    collect(folder, DEEPEST, &mut photographs).map_err(|source| PositionsError::Io {
+    let photographs = photographs_in(folder).map_err(|source| PositionsError::Io {
         what: "folder of photographs",
         path: folder.into(),
         source,
@@ -45,6 +44,13 @@ pub(super) fn read(folder: &Path) -> Result<PositionsFile, PositionsError> {
     let without = photographs.len() - positions.len();
     let warnings = if without > 0 { vec![format!("{without} photographs without a GPS position")] } else { vec![] };
     Ok(PositionsFile { format: "EXIF GPS", frame: GEOGRAPHIC, positions, warnings })
+}
+
+/// The photographs of a folder and of those in it, by their names' endings, in the order of their paths.
+pub fn photographs_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut photographs = Vec::new();
+    collect(folder, DEEPEST, &mut photographs)?;
+    Ok(photographs)
 }
 
 fn collect(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> std::io::Result<()> {

@@ -17,6 +17,7 @@ mod table;
 mod tests;
 
 pub use error::PositionsError;
+pub use exif::photographs_in;
 pub(in crate::format) use frame::frame_of_line;
 pub use frame::{Frame, GEOGRAPHIC};
 pub use read::read_positions;

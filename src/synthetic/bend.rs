@@ -1,7 +1,7 @@
 //! Bends: what no similarity takes away from a reconstruction, and the similarity that comes nearest.
 //!
 //! Method       doming, drift of the scale along the scene and slow waves, in seeded parts
-//! Source       best similarity: Umeyama, IEEE PAMI 13 (1991)
+//! Source       best similarity: Umeyama 1991
 
 use std::f64::consts::{PI, TAU};
 

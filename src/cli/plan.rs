@@ -169,3 +169,6 @@ fn existing_file(path: &Path, what: &str) -> Result<()> {
 fn same(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
+
+#[cfg(test)]
+mod tests;

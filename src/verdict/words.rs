@@ -76,3 +76,6 @@ pub fn sigma(freedom: &Freedom) -> String {
         unit => format!("{:.2} {}", freedom.sigma, unit.symbol()),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -66,7 +66,7 @@ fn every_colour_is_that_of_the_standard() {
                 let rgb = [r as u8, g as u8, b as u8];
                 let found = LabImage::of(&RgbImage::from_pixel(1, 1, image::Rgb(rgb))).pixel(0);
                 for (found, expected) in found.iter().zip(reference(rgb)) {
-                    assert!((f64::from(*found) - expected).abs() < 0.03, "{rgb:?}: {found} {expected}");
+                    assert!((f64::from(*found) - expected).abs() < 0.06, "{rgb:?}: {found} {expected}");
                 }
             }
         }

@@ -14,7 +14,7 @@ fn surfaces() -> Surfaces {
 fn the_patch_at_a_place_is_that_of_the_nearest_of_all_points() {
     let (surfaces, mut random) = (surfaces(), Random::stream(112, 0));
     let mut met = 0;
-    for _ in 0..500 {
+    for _ in 0..2000 {
         let place = Point3::from(Vector3::new(6.5 * random.unit(), 6.5 * random.unit(), 5.0 * random.unit()));
         let (normal, reach) = (random.direction(), 0.8);
         let off = |i: &usize| (surfaces.points[*i].at - place).norm();

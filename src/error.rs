@@ -44,3 +44,6 @@ pub enum Error {
     #[error(transparent)]
     Output(#[from] OutputError),
 }
+
+#[cfg(test)]
+mod tests;

@@ -123,3 +123,6 @@ fn what_is_there(lifted: Result<LiftedSuperpixels, ImageryError>) -> Result<Opti
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! Random numbers whose values are promised: the same seed and stream give the same numbers on every machine.
 //!
-//! Method       ChaCha with 8 rounds (Bernstein 2008); the normal distribution by Box and Muller (1958)
+//! Method       ChaCha with 8 rounds (Bernstein 2008); the normal distribution by Box and Muller 1958
 
 use nalgebra::Quaternion;
 use rand_chacha::ChaCha8Rng;

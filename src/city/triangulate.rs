@@ -90,7 +90,7 @@ fn constrained(points: &[[f64; 2]], edges: &[[usize; 2]]) -> Option<Vec<[usize; 
 /// In the ring's own order a wall of n corners in line takes n * n steps (40,000 corners: 5 s): the mesh finds a place
 /// by walking there from another, past all points as long as they are in line, and a corner laid beside a full line is
 /// tied to all of it. So a triangle comes first, then ever larger samples of the rest, each in the order of a curve that
-/// fills the plane and sought from the corner before it (Amenta, Choi, Rote 2003: Incremental constructions con BRIO): about n * log n.
+/// fills the plane and sought from the corner before it (Amenta, Choi and Rote 2003): about n * log n.
 fn delaunay(points: &[[f64; 2]]) -> Option<(Mesh, Vec<FixedVertexHandle>)> {
     let mut mesh = Mesh::with_capacity(points.len(), 3 * points.len(), 2 * points.len());
     let mut handles: Vec<Option<FixedVertexHandle>> = vec![None; points.len()];

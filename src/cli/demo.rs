@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::export::{OutputKind, UnpackedFile};
+use crate::export::OutputKind;
 use crate::format::escaped;
 use crate::limits::Limits;
 use anyhow::{Context, Result};
@@ -10,57 +10,8 @@ use anyhow::{Context, Result};
 use super::align::carry_out;
 use super::args::{AlignArgs, CityArgs, DemoArgs, Probability, UpArg};
 use super::plan::{AlignPlan, keeps_inputs};
+use super::sample::{SAMPLE, SAMPLE_FOLDER};
 use super::{Outcome, Session};
-
-/// Where the sample lies in the output: whoever wants to go on finds the form of every input there.
-const SAMPLE_FOLDER: &str = "sample";
-
-macro_rules! sample {
-    ($($path:literal),* $(,)?) => {
-        &[$((concat!("sample/", $path), include_bytes!(concat!("../../assets/sample/", $path)))),*]
-    };
-}
-
-/// By their paths in the output: a part of Delfshaven in Rotterdam, its reconstruction from 24 photographs, their
-/// superpixels, and a coarse start.
-pub const SAMPLE: &[UnpackedFile] = sample![
-    "LICENSE.txt",
-    "city.obj",
-    "start.json",
-    "sfm/cameras.txt",
-    "sfm/frames.txt",
-    "sfm/images.txt",
-    "sfm/points3D.txt",
-    "sfm/rigs.txt",
-    "labels/p001.png",
-    "labels/p002.png",
-    "labels/p003.png",
-    "labels/p004.png",
-    "labels/p005.png",
-    "labels/p006.png",
-    "labels/p007.png",
-    "labels/p008.png",
-    "labels/p009.png",
-    "labels/p010.png",
-    "labels/p011.png",
-    "labels/p012.png",
-    "labels/p013.png",
-    "labels/p014.png",
-    "labels/p015.png",
-    "labels/p016.png",
-    "labels/p017.png",
-    "labels/p018.png",
-    "labels/p019.png",
-    "labels/p020.png",
-    "labels/p021.png",
-    "labels/p022.png",
-    "labels/p023.png",
-    "labels/p024.png",
-    "photos/p001.jpg",
-    "photos/p007.jpg",
-    "photos/p013.jpg",
-    "photos/p019.jpg",
-];
 
 pub fn run(args: &DemoArgs, session: &Session) -> Result<Outcome> {
     keeps_inputs(&args.output, &[])?;

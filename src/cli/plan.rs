@@ -185,3 +185,6 @@ fn existing_city(path: &Path, what: &str) -> Result<()> {
 fn same(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
+
+#[cfg(test)]
+mod tests;

@@ -61,7 +61,8 @@ impl Observer for Voice {
 
 impl Voice {
     pub fn new(common: &Common) -> Voice {
-        Voice { bar: Bar::new(common.quiet), quiet: common.quiet, verbose: common.verbose, begun: Instant::now() }
+        let bar = if common.quiet { Bar::silent() } else { Bar::on_terminal() };
+        Voice { bar, quiet: common.quiet, verbose: common.verbose, begun: Instant::now() }
     }
 
     /// The result as JSON, on standard output. `written` is as for [`Voice::result`].

@@ -14,14 +14,19 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// A bar that stays silent where standard error is no terminal, or on wish.
-    pub fn new(quiet: bool) -> Bar {
-        let shown = !quiet && std::io::stderr().is_terminal();
-        let bar = if shown { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
-        if shown {
-            bar.enable_steady_tick(Duration::from_millis(100));
+    /// A bar that is drawn where standard error is a terminal.
+    pub fn on_terminal() -> Bar {
+        if !std::io::stderr().is_terminal() {
+            return Bar::silent();
         }
+        let bar = ProgressBar::new_spinner();
+        bar.enable_steady_tick(Duration::from_millis(100));
         Bar { bar, stage: Mutex::new(String::new()) }
+    }
+
+    /// A bar that is never drawn.
+    pub fn silent() -> Bar {
+        Bar { bar: ProgressBar::hidden(), stage: Mutex::new(String::new()) }
     }
 
     /// Stage `name` has done `done` of `all`; zero of `all` where that is not known.

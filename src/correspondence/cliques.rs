@@ -7,7 +7,7 @@
 //!              Vertices stand in words of 64 bits. Order is fixed, so the answer is the same on every machine
 //! Assumptions  some hundreds of vertices; a budget of search nodes ends a search that would take too long
 //! Fails when   the budget is spent: `complete` is false, and the cliques are the largest found so far
-//! Source       Tomita and Seki, "An efficient branch-and-bound algorithm for finding a maximum clique" (2003)
+//! Source       Tomita and Seki 2003
 
 /// An undirected graph on vertices `0..n`.
 #[derive(Clone, Debug)]

@@ -12,7 +12,7 @@ use super::sampler::Sampler;
 use super::targets::{Target, azimuth};
 use super::weighted_choice::Drawn;
 use crate::geometry::Vector3;
-use crate::random::Random;
+use crate::robust::Random;
 
 impl Sampler<'_> {
     /// A plane for the first patch of a sample.

@@ -67,3 +67,6 @@ impl Offers {
         Offers { chance: self.chance / (total * total), ..self }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,7 @@
 //!              it expects the patch. Each draw tells the chance that it took the right plane: offers have their likelihoods
 //!              for weights, so an offer with the share w of all is right with chance w and taken as often: sum of w^2.
 //! Source       samples over patch-plane pairs and then
-//!              points inside them: Ramalingam et al. (ECCV 2010), section 5
+//!              points inside them: Ramalingam et al. 2010, section 5
 //!
 //! Frames: `level` is centred on the cloud, z up, in metres of the start; the city frame is its own local one.
 

@@ -56,7 +56,7 @@ pub fn search(scene: &Scene, seed: u64, observer: &dyn Observer) -> Result<Hypot
 /// wide enough for it lets many wrong poses score as well as a right one. Where the model knows a twentieth of what was seen, the right pose
 /// is one of a few among tens of thousands, and stands out only once it is sharp.
 ///
-/// Source: local optimisation in random consensus (Chum, Matas, Kittler 2003)
+/// Source: local optimisation in random consensus (Chum, Matas and Kittler 2003)
 struct Improving<'a> {
     search: PoseSearch<'a>,
     refiner: PoseRefiner<'a>,

@@ -9,7 +9,7 @@
 //!              sample is expected after 1 / mean(p q^k) trials and costs c / mean(p q^k).
 //! Assumptions  a right sample leads to a right pose, whatever the configuration; costs in ratio to each other are those of
 //!              the machine on which the constants were measured (a measured time here would undo `same seed, same bytes`)
-//! Source       number of trials: Fischler and Bolles 1981; Ramalingam et al. (ECCV 2010), section 5, weigh 3 planes against 6 so;
+//! Source       number of trials: Fischler and Bolles 1981; Ramalingam et al. 2010, section 5, weigh 3 planes against 6 so;
 //!              docs/mathematics.md 15 (18)
 
 use super::pose_search::PoseSearch;

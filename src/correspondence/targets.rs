@@ -3,7 +3,7 @@
 //! Method       planes are sorted so that neighbours in direction and place are neighbours in memory; every sixteen have a common box, and every
 //!              sixteen boxes another one, so that whoever asks for a direction and a place looks at few others (a packed R-tree)
 //! Assumption   a plane is bound to the box of its corners
-//! Source       packing: Leutenegger, Lopez, Edgington 1997 (sort-tile-recursive)
+//! Source       packing: Leutenegger, Lopez and Edgington 1997 (sort-tile-recursive)
 
 use std::cmp::Ordering;
 

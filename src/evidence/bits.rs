@@ -7,7 +7,7 @@
 //!              not know meets the city as by chance. Neither is demanded: the ratio is averaged over both (marginal likelihood), over m by
 //!              Jeffreys' prior, once for each class of plane of the cloud and once for all in common. So a cloud of which the model knows a fifth loses a third of a bit
 //!              by a miss and gains three or four by a hit. The pieces of a plane of the cloud count as one observation: their logarithms are averaged
-//! Source       evidence against chance: Desolneux, Moisan, Morel 2000; Moisan and Stival 2004; marginal likelihoods: Kass and
+//! Source       evidence against chance: Desolneux, Moisan and Morel 2000; Moisan and Stival 2004; marginal likelihoods: Kass and
 //!              Raftery 1995; the prior, and that no other loses less where the worst is taken: Krichevsky and Trofimov 1981;
 //!              docs/mathematics.md 16.2
 //! Assumptions  planes of the cloud meet the city independently of each other. By Markov's inequality a wrong pose then reaches b bits with a chance below 2^-b

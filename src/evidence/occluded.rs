@@ -6,7 +6,7 @@
 //! Method       a point is hidden where the city blocks its lines of sight to two of its cameras or, where no camera is known, where it lies deep under a
 //!              roof or the ground. One house occludes all that was seen behind it, so that points do not speak one by one: the share
 //!              speaks once, by its rank among the null poses', a chance p that becomes a likelihood ratio (1 - p + p ln p) / (p ln^2 p)
-//! Source       the mean of all ratios k p^(k-1): Vovk and Wang 2021, section 2; its bound: Sellke, Bayarri, Berger 2001;
+//! Source       the mean of all ratios k p^(k-1): Vovk and Wang 2021, section 2; its bound: Sellke, Bayarri and Berger 2001;
 //!              docs/mathematics.md 16.3
 //! Why          wrong poses find walls to lie on, but rarely leave the streets free from which they were seen; this does not depend on
 //!              how much of the scene the model knows. A right pose may hide something, too (glass, a new street): it never loses more

@@ -1,4 +1,13 @@
-//! Raw records as the specifications of the file formats write them, both directions.
+//! File formats, read and written: bytes and text to plain records, and back. What the records mean is for `city` and `reconstruction` to say.
+//!
+//! | read | written |
+//! |---|---|
+//! | city models: `obj`, `gltf` | `obj` |
+//! | reconstructions: `colmap` (text and binary), `ply` | `colmap` (text and binary) |
+//! | JSON: starts (`start`), stored alignments (`alignment`), problems of `cityweld solve` (`problem`) | |
+//!
+//! A file is opened by `file` alone: regular files, up to a limit. Counts in a header are checked against the bytes that are there before
+//! memory is taken for them. `json_kind` tells which of the program's own JSON files a text is; `escape` shows text from files safely on a terminal.
 
 mod alignment;
 pub mod cityjson;

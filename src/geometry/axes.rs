@@ -12,8 +12,7 @@ pub struct Axes {
 
 impl Axes {
     /// Some axes whose third is the unit vector `z`. The branch keeps the divisor at 1 or above, so that no `z` is
-    /// special; the two tangents follow without a square root (Duff et al., "Building an orthonormal basis,
-    /// revisited", JCGT 2017).
+    /// special; the two tangents follow without a square root (Duff et al. 2017).
     #[inline]
     pub fn about(z: &Vector3<f64>) -> Axes {
         let sign = if z.z < 0.0 { -1.0 } else { 1.0 };

@@ -1,6 +1,6 @@
 //! Distortion of a lens within its own plane: radial polynomials, then tangential and thin-prism shifts; and its inverse.
 //!
-//! Source       Brown (1966); Weng, Cohen and Herniou (1992)
+//! Source       Brown 1966; Weng, Cohen and Herniou 1992
 
 use nalgebra::{Matrix2, Vector2};
 

@@ -1,7 +1,7 @@
 //! Lenses: what a camera's parameters mean, and how each model leads from a direction to its own plane and back.
 //!
-//! Source       Kannala and Brandt (2006, fisheye polynomial); Devernay and Faugeras (2001, field of view); Fitzgibbon (2001, division);
-//!              Khomutenko, Garcia and Martinet (2016, enhanced unified model)
+//! Source       fisheye polynomial: Kannala and Brandt 2006; field of view: Devernay and Faugeras 2001; division: Fitzgibbon 2001;
+//!              enhanced unified model: Khomutenko, Garcia and Martinet 2016
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,8 +1,18 @@
-//! Points, planes, similarities, cameras and spatial indices. No files, no randomness.
+//! The geometry that all rooms share: points and planes, seven-parameter (Helmert) transformations, camera models, lines of sight. It reads
+//! no files and draws no random numbers.
 //!
-//! Frames stand in names: `x_in_city`, `n_in_sfm`; a transform is always `to_from_from`, so that
-//! `city_from_cam = city_from_sfm * sfm_from_cam` cancels by reading. *City*: metres, z up, about a local origin.
-//! *Sfm*: one reconstruction's own frame, of arbitrary scale. *Cam*: x right, y down, z forward.
+//! | file | what it holds |
+//! |---|---|
+//! | `similarity` | x_to = s R x_from + t, its inverse and product |
+//! | `plane` | n . x + d = 0, and how a point's distance from it changes with a motion |
+//! | `rotation`, `axes` | the rotation nearest to a matrix; three orthonormal axes about a given one |
+//! | `camera`, `camera_model`, `lens`, `distortion` | from the camera frame to pixels and back, for every camera model of COLMAP |
+//! | `rays` | which triangle a line of sight meets first |
+//! | `start` | approximate values of a pose, with their standard deviations |
+//!
+//! Every coordinate and every transformation names its frames: `x_in_city`, `city_from_sfm`; in `city_from_cam = city_from_sfm * sfm_from_cam`
+//! the inner names cancel. *City*: metres, z up, about a local origin. *Sfm*: the model coordinate system of one reconstruction, of arbitrary
+//! scale. *Cam*: x right, y down, z forward.
 
 mod axes;
 mod camera;

@@ -87,7 +87,7 @@ impl RayCaster {
 }
 
 impl Shape {
-    /// Distance along the ray to the triangle (Moeller and Trumbore 1997); the surface itself at distance 0 does not count.
+    /// Distance along the ray to the triangle (Möller and Trumbore 1997); the surface itself at distance 0 does not count.
     fn meets(&self, from: &Point3<f64>, direction: &Vector3<f64>) -> Option<f64> {
         let [e1, e2] = &self.edges;
         let p = direction.cross(e2);

@@ -5,7 +5,7 @@
 //! Method       rotation from the singular value decomposition of the couples' cross covariance, with the sign that keeps it a rotation;
 //!              scale from its trace; translation from the means
 //! Degenerate   couples on a line or in a point: `None`
-//! Source       Umeyama, IEEE PAMI 13 (1991), equations 40 to 42
+//! Source       Umeyama 1991, equations 40 to 42
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 

@@ -136,47 +136,4 @@ fn smoothed(mut image: LabImage) -> LabImage {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn white_black_and_red_have_their_cielab_values() {
-        let lab = |rgb| LabImage::of(&RgbImage::from_pixel(3, 2, image::Rgb(rgb))).pixel(4);
-        // CIE 15 for sRGB's primaries under D65.
-        for (rgb, expected) in
-            [([255, 255, 255], [100.0, 0.0, 0.0]), ([0, 0, 0], [0.0, 0.0, 0.0]), ([255, 0, 0], [53.24, 80.09, 67.20])]
-        {
-            assert!(distance(&lab(rgb), &expected) < 0.1, "{rgb:?}: {:?}", lab(rgb));
-        }
-    }
-
-    #[test]
-    fn a_large_photograph_is_scaled_down_in_its_shape() {
-        let image = LabImage::of(&RgbImage::new(4000, 1000));
-        assert_eq!((image.width, image.height), (2000, 500));
-    }
-
-    #[test]
-    fn every_grey_has_the_lightness_of_its_luminance() {
-        for value in 0..=255u8 {
-            let [l, a, b] = LabImage::of(&RgbImage::from_pixel(2, 2, image::Rgb([value; 3]))).pixel(0);
-            let luminance = f64::from(linear(value.into()));
-            let dark = luminance <= 216.0 / 24_389.0;
-            let expected = if dark { luminance * 24_389.0 / 27.0 } else { 116.0 * luminance.cbrt() - 16.0 };
-            assert!((f64::from(l) - expected).abs() < 2e-3 && a.abs() < 0.02 && b.abs() < 0.02, "{value}: {l} {a} {b}");
-        }
-    }
-
-    #[test]
-    fn smoothing_blends_neighbours_and_counts_the_border_twice() {
-        let white = |x: u32, y: u32| if (x, y) == (0, 0) { [255; 3] } else { [0; 3] };
-        let image = LabImage::of(&RgbImage::from_fn(4, 3, |x, y| image::Rgb(white(x, y))));
-        let l: Vec<f32> = image.channels[0].iter().map(|l| l / 100.0).collect();
-        let across = [0.75, 0.25, 0.0, 0.0];
-        for (y, down) in [0.75, 0.25, 0.0].into_iter().enumerate() {
-            for (x, across) in across.into_iter().enumerate() {
-                assert!((l[y * 4 + x] - across * down).abs() < 1e-4, "{l:?}");
-            }
-        }
-    }
-}
+mod tests;

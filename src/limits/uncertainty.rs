@@ -46,7 +46,7 @@ pub struct UncertaintyLimits {
     pub lids_sigma_m: f64,
     pub roofs_sigma_m: f64,
     /// Degrees of freedom of Student's t for buildings, fronts, pieces and points. Chosen: between Cauchy's one and the four of Lange, Little and
-    /// Taylor (1989). Measured on 36 generated captures, a gate of two units: 0.26 m of error in the mean, where 8 with a gate of half a unit for the
+    /// Taylor 1989. Measured on 36 generated captures, a gate of two units: 0.26 m of error in the mean, where 8 with a gate of half a unit for the
     /// pose gave 0.31 m.
     pub student_dof: f64,
     /// Fewest buildings whose scatter is asked. Derived: as many as a pose has unknowns, and one.

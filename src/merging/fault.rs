@@ -84,3 +84,6 @@ pub enum EdgeFault {
     #[error("the city does not fix both parts")]
     NotFixedByCity,
 }
+
+#[cfg(test)]
+mod tests;

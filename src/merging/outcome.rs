@@ -165,3 +165,6 @@ pub struct Fused {
     /// For each point the part (in the order given) that it comes from; of a fused one the first.
     pub part_of_point: Vec<u32>,
 }
+
+#[cfg(test)]
+mod tests;

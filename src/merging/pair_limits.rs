@@ -46,7 +46,7 @@ pub struct FitLimits {
     /// of a point pair
     /// leaves one in a thousand beyond 4.03.
     pub gate_sigmas: f64,
-    /// The bend of two parts against each other is sought between these. Chosen: what no data have, and what no judge lets pass.
+    /// The bend of two parts against each other is sought between these. Chosen: what no data have, and what no decision lets pass.
     pub least_bend: f64,
     pub most_bend: f64,
     /// The bend before anything is known of it. Chosen: as the floor of an edge.

@@ -66,3 +66,6 @@ fn spacing(points: &[KnownPoint], tree: &ImmutableKdTree<f64, 3>) -> Option<f64>
     let mut spacings: Vec<f64> = points.iter().map(to_neighbour).collect();
     median(&mut spacings)
 }
+
+#[cfg(test)]
+mod tests;

@@ -116,7 +116,7 @@ fn place<const N: usize>(d: &Vector3<f32>) -> usize {
 /// The angle of a tangent between -1 and 1, in right angles, to 2e-3 of one.
 #[inline]
 fn angle_of(tangent: f32) -> f32 {
-    // Rajan et al. (2006): atan(x) = pi/4 x + 0.273 x (1 - |x|), to 0.0038 radians.
+    // Rajan et al. 2006: atan(x) = pi/4 x + 0.273 x (1 - |x|), to 0.0038 radians.
     const RIGHT_ANGLES: f32 = std::f32::consts::FRAC_2_PI;
     tangent * (0.5 + 0.273 * RIGHT_ANGLES * (1.0 - tangent.abs()))
 }

@@ -1,4 +1,12 @@
-//! Planes on both sides of the problem: [`CityPlanes`] merged from facets, [`Patch`]es of points, and which way is up.
+//! The planes that an alignment compares: those of the city model, and those of the point cloud.
+//!
+//! * **The city's side.** Facets of one building in one plane are one plane (`city_planes`); facets that nobody could have seen from outside
+//!   (party walls, undersides) are left out (`facet_visibility`); a grid answers which facet of a given side and direction is nearest to a
+//!   point (`facet_grid`, with `facet_tile`, `tile_triangle`, `directions`). [`PreparedCity`] holds all of it for one city, for any number of alignments.
+//! * **The cloud's side.** One point a place, large clouds thinned evenly (`places`); a plane through each point's neighbours (`cloud`,
+//!   `fit`); regions of points in one plane (`regions`) become [`Patches`] with a plane, its noise and its outward side, as far as cameras
+//!   tell it (`viewers`).
+//! * **The vertical.** Which way is up in the reconstruction, by its walls and floors, the cameras and the start (`upright`, `up_votes`).
 
 mod city_planes;
 mod cloud;

@@ -10,7 +10,7 @@
 //!                 the region's plane and agree with its normal, so that small superpixels of one wall become one patch.
 //! Assumptions  the noise of neighbouring points is alike; planes are larger than the spacing of the points
 //! Fails when   the cloud has no planes (trees, rubble): then there are few patches or none, and that is the answer
-//! Source       region growing after Rabbani, van den Heuvel, Vosselman (2006); superpixel planes after Ramalingam et al. (2010)
+//! Source       region growing after Rabbani, van den Heuvel and Vosselman 2006; superpixel planes after Ramalingam et al. 2010
 
 use super::cloud::local_surfaces;
 use super::fit::{FittedPlane, fit_plane};

@@ -4,7 +4,7 @@
 //! Output       disjoint groups of points, the flattest first
 //! Method       a region takes in neighbours, in space and in the same superpixel, that lie in its plane and agree with its normal; the
 //!              plane is fitted anew each time the region has doubled. A superpixel's plane gives its points a firmer normal first
-//! Source       Rabbani, van den Heuvel and Vosselman (2006); superpixel planes: Ramalingam et al. (2010)
+//! Source       Rabbani, van den Heuvel and Vosselman 2006; superpixel planes: Ramalingam et al. 2010
 
 use std::collections::VecDeque;
 

@@ -68,3 +68,6 @@ impl Checker {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -204,3 +204,6 @@ impl Image {
         self.cam_from_sfm_rotation * x_in_sfm + self.cam_from_sfm_translation
     }
 }
+
+#[cfg(test)]
+mod tests;

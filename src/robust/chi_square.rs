@@ -3,7 +3,7 @@
 //! Method       the regularised lower incomplete gamma function by its series,
 //!              P(a, y) = y^a e^-y / Gamma(a + 1) (1 + y / (a + 1) + y^2 / ((a + 1) (a + 2)) + ...), a half the freedoms and y half the
 //!              sum, turned round by bisection
-//! Source       Abramowitz and Stegun (1964), 6.5.29 and 26.4.1
+//! Source       Abramowitz and Stegun 1964, 6.5.29 and 26.4.1
 
 /// The sum of squares of so many freedoms that chance exceeds in a share `tail` of all cases.
 pub fn chi_square_beyond(freedoms: u32, tail: f64) -> f64 {

@@ -5,7 +5,7 @@
 //! Output       the best distinct poses, best first, and how often each was found
 //! Method       random consensus (Fischler and Bolles 1981) in blocks with a random stream each; blocks run in parallel and are
 //!              merged in their order, so that the number of threads changes nothing. The best of a block are improved, and ranked
-//!              by what they score then (local optimisation: Chum, Matas, Kittler 2003). Instead of an inlier ratio, which
+//!              by what they score then (local optimisation: Chum, Matas and Kittler 2003). Instead of an inlier ratio, which
 //!              symmetric cities make meaningless, it stops when the leader has been found from enough independent samples.
 
 use rayon::prelude::*;

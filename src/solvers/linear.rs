@@ -11,7 +11,7 @@
 //! Degenerate  three planes: points of one plane are coplanar, so a plane contributes rank 3 at most and three planes
 //!             9 of 12, however many points. The answer is then arbitrary: `rank` tells
 //! Scaling     points about their centroid in units of their spread
-//! Source      Ramalingam et al. (ECCV 2010), section 5; mathematics.md section 11
+//! Source      Ramalingam et al. 2010, section 5; mathematics.md section 11
 //! Cost        not measured; it is a baseline
 //! Tests       below; examples/figure4.rs
 //! ```

@@ -7,7 +7,7 @@
 //!             Cameras come in the same way: a pixel's ray is a line of the object, an image line a plane through the centre.
 //! Fails when  a line is to lie on a point, or a plane on a line or a point: there the constraint is linear in R and -R^T t, not in
 //!             R and t. Exchange the two frames.
-//! Source      Ramalingam et al. (ECCV 2010), section 4; mathematics.md section 9
+//! Source      Ramalingam et al. 2010, section 4; mathematics.md section 9
 //! ```
 //!
 //! Rigid poses (real solutions on average over random problems; each scenario is a test):

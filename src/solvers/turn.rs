@@ -109,25 +109,4 @@ impl Turn {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_say_what_the_rotation_does() {
-        let known = KnownAxis {
-            sensor: Axes::about(&Vector3::new(0.6, 0.0, -0.8)),
-            object: Axes::about(&Vector3::new(0.36, 0.48, 0.8)),
-        };
-        let (normal, point) = (Vector3::new(0.2, -0.5, 1.1), Vector3::new(3.0, 0.4, -2.0));
-        for sense in Sense::BOTH {
-            let turn = Turn { cos: 0.28, sin: -0.96, sense };
-            let rotation = known.rotation(&turn);
-            assert!((rotation.determinant() - 1.0).abs() < 1e-15);
-            assert!((rotation * known.sensor.z - known.object.z * sense.sigma()).norm() < 1e-15);
-            let expected = normal.dot(&(rotation * point));
-            let parts = known.parts(&known.object.coordinates(&normal), &known.sensor.coordinates(&point));
-            assert!((turn.along(&parts) - expected).abs() < 1e-14);
-            assert!((turn.along(&known.parts_of(&(normal * point.transpose()))) - expected).abs() < 1e-14);
-        }
-    }
-}
+mod tests;

@@ -1,7 +1,7 @@
 //! Bends: what no similarity takes away from a reconstruction, and the similarity that comes nearest.
 //!
 //! Method       doming, drift of the scale along the scene and slow waves, in seeded parts
-//! Source       best similarity: Umeyama, IEEE PAMI 13 (1991)
+//! Source       best similarity: Umeyama 1991
 
 use std::f64::consts::{PI, TAU};
 
@@ -100,34 +100,4 @@ pub(super) fn best_similarity(pairs: &[(Point3<f64>, Point3<f64>)]) -> Similarit
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::synthetic::sfm_from_city;
-
-    fn points() -> Vec<Point3<f64>> {
-        let mut random = Random::stream(4, 0);
-        (0..500).map(|_| Point3::from(random.in_cube().component_mul(&Vector3::new(1.0, 0.6, 0.2)))).collect()
-    }
-
-    #[test]
-    fn the_best_similarity_is_the_one_that_made_the_pairs() {
-        let truth = sfm_from_city();
-        let pairs: Vec<_> = points().iter().map(|p| (*p, truth.apply(p))).collect();
-        let found = best_similarity(&pairs);
-        assert!(pairs.iter().all(|(a, b)| (found.apply(a) - b).norm() < 1e-10));
-    }
-
-    #[test]
-    fn a_bend_leaves_its_share_of_the_extent() {
-        let points = points();
-        for share in [0.0, 0.001, 0.005] {
-            let bend = Bend::new(&points, share, &mut Random::stream(1, 0));
-            let pairs: Vec<_> = points.iter().map(|p| (bend.apply(p), *p)).collect();
-            let best = best_similarity(&pairs);
-            let mut left: Vec<f64> = pairs.iter().map(|(a, b)| (best.apply(a) - b).norm()).collect();
-            left.sort_by(f64::total_cmp);
-            let expected = share * extent_of(&points);
-            assert!((left[495] - expected).abs() < 0.02 * expected + 1e-9, "{} {expected}", left[495]);
-        }
-    }
-}
+mod tests;

@@ -48,3 +48,6 @@ pub(super) fn count(random: &mut Random, mean: f64) -> usize {
     }
     found
 }
+
+#[cfg(test)]
+mod tests;

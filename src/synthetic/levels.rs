@@ -145,3 +145,6 @@ impl Levels {
         ("all of it good", |l| *l = Levels { points: l.points, ..Levels::good() }),
     ];
 }
+
+#[cfg(test)]
+mod tests;

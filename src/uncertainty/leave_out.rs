@@ -6,8 +6,7 @@
 //!              much. It assumes nothing of how a building errs; what all of them share it cannot see. For building planes the information that is left
 //!              is told as it is
 //! Fails when   there are few buildings: then their scatter says little, and below a least number it is not asked
-//! Source       Efron (1982), The jackknife, the bootstrap and other resampling plans;
-//!              docs/mathematics.md 17.3
+//! Source       Efron 1982; docs/mathematics.md 17.3
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;

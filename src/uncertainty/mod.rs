@@ -6,8 +6,8 @@
 //!              beside the pose, each with a spread that is estimated from the data (`estimate`). All but the pose is
 //!              eliminated (`elimination`), which leaves the information that the data hold on the pose; what the answer does when
 //!              one building or one building plane is left out checks it (`leave_out`)
-//! Source       mixed models and their variances: Harville (JASA 1977), Laird and Ware (Biometrics 1982); with heavy tails: Lange, Little and
-//!              Taylor (JASA 1989), Pinheiro, Liu and Wu (JCGS 2001); leaving out: Efron (1982)
+//! Source       mixed models and their variances: Harville 1977, Laird and Ware 1982; with heavy tails: Lange, Little and
+//!              Taylor 1989, Pinheiro, Liu and Wu 2001; leaving out: Efron 1982
 
 mod bending;
 mod elimination;

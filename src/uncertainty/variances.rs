@@ -3,7 +3,7 @@
 //! Question     given the unknowns and their covariance, which variances and weights make them most likely?
 //! Method       one step of expectation and maximisation: a variance is the mean of the expected squares, those of a found value and
 //!              of its own variance; a weight is that of Student's t. Each mean begins with what is known beforehand
-//! Source       docs/mathematics.md, section 17.2; Laird and Ware (1982); Lange, Little and Taylor (1989)
+//! Source       docs/mathematics.md, section 17.2; Laird and Ware 1982; Lange, Little and Taylor 1989
 
 use nalgebra::{DMatrix, DVector};
 

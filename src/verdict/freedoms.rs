@@ -5,7 +5,7 @@
 //! Method       eigenvectors of the information are the freedoms; a freedom is determined when the data alone hold it to within the accuracy
 //!              that is asked for, and, no matter which front is left out, to within a multiple of it. Its sigma includes the
 //!              start, so that it is finite
-//! Source       docs/mathematics.md 10.1 and 17.4; Gelfand et al. (3DIM 2003) for the slippable motions of a surface
+//! Source       docs/mathematics.md 10.1 and 17.4; Gelfand et al. 2003 for the slippable motions of a surface
 
 use super::{Freedom, FreedomKind, FreedomUnit, words};
 use crate::geometry::Vector3;

@@ -16,7 +16,7 @@
 //!              a pose of share w needs log2(1/w) bits more. Each rival is as likely as its own bits, and the start's, say. Two
 //!              comparisons decide, both in bits: the evidence against what is needed, and the lead over every rival against log2 of one
 //!              over the false alarms. [`Certainty::probability`] is reported only
-//! Source       a-contrario test: Desolneux, Moisan, Morel 2000; weighted union bound: Genovese, Roeder, Wasserman 2006;
+//! Source       a-contrario test: Desolneux, Moisan and Morel 2000; weighted union bound: Genovese, Roeder and Wasserman 2006;
 //!              docs/mathematics.md 16.4
 //!
 //! Differences along freedoms that nothing holds do not count. Beyond three sigmas the start rules a pose out unless that explains

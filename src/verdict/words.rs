@@ -29,7 +29,8 @@ pub fn turn(axis: &Vector3<f64>) -> String {
 
 /// Azimuth of a line, degrees from north (y) to east (x), 0 to 180.
 fn azimuth_deg(unit: &Vector3<f64>) -> f64 {
-    unit.x.atan2(unit.y).to_degrees().rem_euclid(180.0)
+    // Added to zero, which may be a negative one.
+    0.0 + unit.x.atan2(unit.y).to_degrees().rem_euclid(180.0)
 }
 
 /// How `b` differs from `a`, both maps of the same cloud whose centre `a` puts at `center`.
@@ -76,3 +77,6 @@ pub fn sigma(freedom: &Freedom) -> String {
         unit => format!("{:.2} {}", freedom.sigma, unit.symbol()),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -191,7 +191,8 @@ fn parse<T>(path: &Path, bytes: &mut Vec<u8>, binary: BinaryParser<T>, text: Tex
     if UTF16_MARKS.iter().any(|mark| start.starts_with(mark)) {
         return Err(Fault::Utf16);
     }
-    if !is_text(start, path.extension().is_some_and(|e| e == "txt")) {
+    let by_name = if path.extension().is_some_and(|e| e == "txt") { Encoding::Text } else { Encoding::Binary };
+    if encoding_of(start, by_name) == Encoding::Binary {
         let records = binary(Cursor::new(reader, length))?;
         return Ok(Read { records, encoding: Encoding::Binary, announced: None });
     }
@@ -206,11 +207,13 @@ const UTF16_MARKS: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
 /// What some editors put before text.
 const UTF8_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// A binary file starts with a count of 8 bytes, which are not all letters, digits and blanks (the high ones are zero).
-fn is_text(start: &[u8], named_as_text: bool) -> bool {
+/// A binary file starts with a count of 8 bytes, which are not all letters, digits and blanks (the high ones are zero). What is shorter is
+/// what its name says.
+fn encoding_of(start: &[u8], by_name: Encoding) -> Encoding {
     match start.strip_prefix(UTF8_MARK).unwrap_or(start).first_chunk::<8>() {
-        Some(start) => start.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()),
-        None => named_as_text,
+        Some(start) if start.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()) => Encoding::Text,
+        Some(_) => Encoding::Binary,
+        None => by_name,
     }
 }
 
@@ -224,12 +227,14 @@ mod tests {
 
     #[test]
     fn binary_and_text_are_told_apart_by_their_first_bytes() {
-        assert!(is_text(b"# Camera list", false));
-        assert!(is_text(b"1 PINHOLE 640", false));
-        assert!(is_text(b"\xEF\xBB\xBF# Camera list", false));
-        assert!(!is_text(&[1, 0, 0, 0, 0, 0, 0, 0, 5], true));
-        assert!(!is_text(&[0xFF; 16], true));
-        assert!(is_text(b"", true) && !is_text(b"", false));
+        let [text, binary] = [Encoding::Text, Encoding::Binary];
+        for start in [&b"# Camera list"[..], b"1 PINHOLE 640", b"\xEF\xBB\xBF# Camera list"] {
+            assert_eq!(encoding_of(start, binary), text);
+        }
+        for start in [&[1, 0, 0, 0, 0, 0, 0, 0, 5][..], &[0xFF; 16]] {
+            assert_eq!(encoding_of(start, text), binary);
+        }
+        assert!(encoding_of(b"", text) == text && encoding_of(b"", binary) == binary);
     }
 
     #[test]

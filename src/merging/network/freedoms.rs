@@ -57,3 +57,6 @@ fn positive(v: &Vector3<f64>) -> Vector3<f64> {
     let unit = v.normalize();
     if unit[unit.iamax()] < 0.0 { -unit } else { unit }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,7 @@
 //!              optimum, H^-1 (sum g_k g_k^T) H^-1 is the covariance that holds whatever the errors inside a block have to do
 //!              with each other; its size against H^-1 is trace(H^-1 sum g_k g_k^T) / 7.
 //! Assumptions  blocks err independently: a deformation of the whole part is not seen
-//! Source       Liang and Zeger (1986), "sandwich" covariance; Kish (1965) for the name
+//! Source       Liang and Zeger 1986, "sandwich" covariance; Kish 1965 for the name
 
 use super::rows::PlacedEquations;
 use crate::geometry::Point3;

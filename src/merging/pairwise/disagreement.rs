@@ -38,3 +38,6 @@ impl Difference {
         format!("{:.2} % of the extent ({:.1} sigmas)", 50.0 * self.share, self.sigmas)
     }
 }
+
+#[cfg(test)]
+mod tests;

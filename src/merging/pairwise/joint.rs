@@ -11,7 +11,7 @@
 //!                 pulls the less, the less it can be right.
 //!              4. Once more in the same way, with all surfaces that both parts have in place of the superpixels.
 //! Assumptions  the pairs are the firmer source, since they hold three directions each
-//! Fails when   pairs and planes are wrong together; the cameras and the shape are judged apart from this ([`super::decision`])
+//! Fails when   pairs and planes are wrong together; the cameras and the shape are checked apart from this ([`super::decision`])
 
 use super::disagreement::difference;
 use super::fit::{Fit, OwnFit, Sources, Term, own_fit};
@@ -49,7 +49,7 @@ impl TrackEstimate<'_> {
         Joint { fit: self.found.fit.clone(), note, contradiction: None }
     }
 
-    /// The answer with the planes of superpixels, where they can be heard.
+    /// The answer with the planes of superpixels, where there are enough of them.
     pub fn with_planes(&self, planes: &SharedPlanes, seed: u64) -> Joint {
         let (by_pairs, limits) = (&self.found.fit, self.limits);
         if too_few(planes, &limits.decision).is_some() {

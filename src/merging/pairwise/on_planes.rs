@@ -22,7 +22,7 @@ pub(super) fn share_on_planes(planes: &SharedPlanes, a_from_b: &Similarity, on_p
     inside / all
 }
 
-/// Why the planes cannot be heard, if so.
+/// Why there are too few of them to say anything, if so.
 pub(super) fn too_few(planes: &SharedPlanes, limits: &PairDecisionLimits) -> Option<PairFault> {
     let (planes, points) = (planes.groups.len(), planes.correspondences());
     let are_few = planes < limits.fewest_planes || points < limits.fewest_on_planes;

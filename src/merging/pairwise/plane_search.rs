@@ -7,7 +7,7 @@
 //!              and all six configurations are drawn. Samples of noisy points a few pixels apart give rough poses, so the best
 //!              distinct ones are all refined, with a gate that narrows, and compared after that.
 //! Fails when   nearly all planes are parallel, or more than half of the points lie off their planes
-//! Source       Ramalingam, Taguchi, Marks and Tuzel (ECCV 2010), section 5
+//! Source       Ramalingam, Taguchi, Marks and Tuzel 2010, section 5
 
 use super::fit::{OwnFit, Sources};
 use super::plane_rows::{PlaneRows, settle_planes};

@@ -6,7 +6,7 @@
 //! Method       [`PlaneGroup::of`] for each superpixel that both parts have points in
 //! Assumptions  a superpixel shows one piece of surface
 //! Fails when   the superpixels hold fewer than a handful of points (sparse clouds, small superpixels)
-//! Source       Ramalingam, Taguchi, Marks and Tuzel (ECCV 2010), section 5
+//! Source       Ramalingam, Taguchi, Marks and Tuzel 2010, section 5
 
 use super::planes::{PlaneGroup, PlaneOf, SharedPlanes};
 use crate::merging::limits::MergeLimits;

@@ -2,7 +2,7 @@
 //!
 //! Method       three pairs give a similarity in closed form ([`umeyama`]), each shared camera gives one alone; the best by consensus is
 //!              refined with its bend by the pairs alone, and once more with the cameras that agree with it
-//! Source       consensus: MSAC, Torr and Zisserman (2000)
+//! Source       consensus: MSAC, Torr and Zisserman 2000
 
 use super::camera_rows::CameraRows;
 use super::fit::{Fit, Sources, Term, settle};

@@ -8,7 +8,7 @@
 //!              patches face the same way. (Superpixels tell the same for shared photographs alone, but need no pose.)
 //! Assumptions  the similarity is right to within the spacing of the points
 //! Fails when   the parts have no surface in common: then there is no evidence
-//! Source       refinement on planes of all points: Ramalingam, Taguchi, Marks and Tuzel (ECCV 2010), section 5
+//! Source       refinement on planes of all points: Ramalingam, Taguchi, Marks and Tuzel 2010, section 5
 
 use std::collections::BTreeMap;
 

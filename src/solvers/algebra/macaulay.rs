@@ -39,3 +39,6 @@ pub fn meet_in_points(quadrics: &[Quadric; 3]) -> bool {
     let sorted = Singular::of(&rows).sorted();
     sorted[26] > MACAULAY_RANK * sorted[0]
 }
+
+#[cfg(test)]
+mod tests;

@@ -14,7 +14,7 @@
 //! Solutions   8 real roots at most; up to MOST_ROOTS candidates, since nearly double ones come twice
 //! Why         A Sturm chain divides by remainders that may vanish; averages cannot blow up. Rounding in the averages is
 //!             below that in the coefficients themselves.
-//! Source      Lane and Riesenfeld, "Bounds on a polynomial" (BIT 1981); the conversion is derived below
+//! Source      Lane and Riesenfeld 1981; the conversion is derived below
 //! Tests       below
 //! ```
 

@@ -13,8 +13,7 @@
 //! Solutions   8 at most
 //! Degenerate  dependent quadrics: no point. A curve of solutions: the octic is rounding noise, whatever it returns satisfies the
 //!             equations but is one of many
-//! Source      Kukelova, Heller, Fitzgibbon, "Efficient intersection of three quadrics and applications in computer
-//!             vision" (CVPR 2016); homogeneous form, choice of charts and polish: mathematics.md sections 3, 6
+//! Source      Kukelova, Heller and Fitzgibbon 2016; homogeneous form, choice of charts and polish: mathematics.md sections 3, 6
 //! ```
 
 use crate::geometry::Vector3;

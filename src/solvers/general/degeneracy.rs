@@ -76,3 +76,6 @@ pub fn condition_at(sought: &Sought, rows: &[Row], scale: f64, rotation: &Matrix
     let normals: Vec<Vector3<f64>> = rows.iter().map(|row| row.normal / row.normal.norm()).collect();
     condition(sought, &images, &normals)
 }
+
+#[cfg(test)]
+mod tests;

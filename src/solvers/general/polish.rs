@@ -95,3 +95,6 @@ fn linear_scale(problem: &Normalised, rotation: &Matrix3<f64>) -> f64 {
     let rows: Vec<[f64; 4]> = problem.forms.iter().map(columns).collect();
     Singular::of(&rows).least_squares(&right, NO_INFORMATION)[3]
 }
+
+#[cfg(test)]
+mod tests;

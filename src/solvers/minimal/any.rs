@@ -15,8 +15,7 @@
 //! Degenerate  normals that do not span space, planes through one point (similarity), dependent quadrics: no pose.
 //!             A curve of solutions: whatever is returned satisfies the rows but is one of many; general/degeneracy.rs tells
 //! Scaling     equivariant in both frames; offsets should be taken about a near origin
-//! Source      Kukelova, Heller, Fitzgibbon, "Efficient intersection of three quadrics and applications in computer
-//!             vision" (CVPR 2016); mathematics.md sections 3, 6, 7
+//! Source      Kukelova, Heller and Fitzgibbon 2016; mathematics.md sections 3, 6, 7
 //! Cost        1.87 us rigid, 2.39 us similarity (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000
 //!             1.2e-15 of the scene
 //! Tests       tests/solver_accuracy.rs; tests/solver_problems.rs; golden/*.json

@@ -11,7 +11,7 @@
 //! Solutions   4 at most. (3,1,1,1): 0, 2 or 4, 2.745 on average; similarities: those with s > 0, 2.06 on average
 //! Degenerate  collinear triple, normals that do not span space: no pose is returned
 //! Scaling     differences to p_1; every test is relative to lengths in the data
-//! Source      Ramalingam et al. (ECCV 2010), section 3.1, in axes of our own; mathematics.md 4.1, 4.3 and 7
+//! Source      Ramalingam et al. 2010, section 3.1, in axes of our own; mathematics.md 4.1, 4.3 and 7
 //! Cost        se3_3111 0.25 us, sim3_31111 0.29 us (benches/solvers, shared 2-core EPYC, 2026-11-25); residual 1e-15 of the
 //!             scene as a rule, 1.3e-12 the worst of 100,000
 //! Tests       tests/solver_accuracy.rs; golden/rigid.json, similarity.json

@@ -16,7 +16,7 @@
 //! Solutions   (3,3,1): 2; (3,3,2), (3,3,3): 1; with planes at right angles the twins of mathematics.md 4.5: 2 or 4
 //! Degenerate  collinear triples, parallel planes, normals in one plane: no pose is returned
 //! Scaling     differences to centroids; all tests are relative
-//! Source      Ramalingam et al. (ECCV 2010), section 3.2; mathematics.md 4.4, 4.5
+//! Source      Ramalingam et al. 2010, section 3.2; mathematics.md 4.4, 4.5
 //! Cost        0.15 to 0.18 us (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000 1.4e-11 of the scene
 //! Tests       tests/solver_accuracy.rs; golden/rigid.json
 //! ```

@@ -11,7 +11,7 @@
 //! Solutions   4 at most. (3,2,1): 4 whenever a pose exists; similarities: those with s > 0, 2.15 on average
 //! Degenerate  collinear triple, normals that do not span space, the pair along m: no pose is returned
 //! Scaling     differences to p_1; every test is relative to lengths in the data
-//! Source      Ramalingam et al. (ECCV 2010), section 3.1, in axes of our own; mathematics.md 4.1, 4.2 and 7
+//! Source      Ramalingam et al. 2010, section 3.1, in axes of our own; mathematics.md 4.1, 4.2 and 7
 //! Cost        se3_321 0.23 us, sim3_3211 0.24 us (benches/solvers, shared 2-core EPYC, 2026-11-25); residual 1e-15 of the
 //!             scene as a rule, 1.3e-12 the worst of 100,000
 //! Tests       tests/solver_accuracy.rs; golden/rigid.json, similarity.json

@@ -12,7 +12,7 @@
 //! Solutions   1, with planes at right angles the twins of mathematics.md 4.5: 2 or 4
 //! Degenerate  collinear triple, normals that do not span space, pairs along m: no pose is returned
 //! Scaling     differences to p_1; every test is relative to lengths in the data
-//! Source      Ramalingam et al. (ECCV 2010), section 3.1, in axes of our own; mathematics.md 4.4
+//! Source      Ramalingam et al. 2010, section 3.1, in axes of our own; mathematics.md 4.4
 //! Cost        0.62 us (benches/solvers, shared 2-core EPYC, 2026-11-25); residual 1e-15 of the scene as a rule, 1.3e-12 the
 //!             worst of 100,000
 //! Tests       tests/solver_accuracy.rs; tests/solver_problems.rs; golden/rigid.json

@@ -1,3 +1,4 @@
+use super::super::leave_out::by_building_plane;
 use super::super::observations::observations;
 use super::super::rows::OF_BUILDING_PLANE;
 use super::*;
@@ -136,6 +137,27 @@ fn unknowns_of_buildings_and_planes_put_back_are_those_of_the_dense_system() {
                 let expected = found.rows(start, OF_BUILDING_PLANE).norm_squared() + block.trace();
                 assert!((squared - expected).abs() < 1e-6 * expected, "{squared} {expected}");
             }
+        }
+    });
+}
+
+#[test]
+fn information_without_a_building_plane_is_that_of_the_dense_system_without_its_cells() {
+    with_system(|system, observed| {
+        let Dense { matrix, rows, .. } = dense(system, observed);
+        let without = by_building_plane(system);
+        assert_eq!(without.len(), observed.building_planes.len());
+        let planes = observed.buildings.iter().flat_map(|building| building.building_planes.clone());
+        for (found, p) in without.iter().zip(planes) {
+            let mut left = matrix.clone();
+            let pose = left.view((0, 0), (POSE, POSE)) - system.start.view((0, 0), (POSE, POSE));
+            left.view_mut((0, 0), (POSE, POSE)).copy_from(&pose);
+            for cell in observed.building_planes[p].cells.clone() {
+                let weight = system.cell_weights[cell] / system.variance_of_cell(cell);
+                left -= &rows[cell] * rows[cell].transpose() * weight;
+            }
+            let expected = inverse(inverse(left).view((0, 0), (POSE, POSE)).into_owned());
+            assert!((found - &expected).norm() < 1e-6 * expected.norm(), "{found} {expected}");
         }
     });
 }

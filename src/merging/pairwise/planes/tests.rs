@@ -1,6 +1,7 @@
 use super::super::test_scene::{RADIUS, scene, truth};
 use super::*;
 use crate::geometry::Matrix3;
+use crate::random::Random;
 
 #[test]
 fn both_ways_measure_the_same_distance_with_the_same_sense() {
@@ -40,4 +41,52 @@ fn a_heap_of_points_and_a_plane_seen_edge_on_are_no_plane() {
     assert!(group(&flat, Point3::new(9.0, 0.0, 0.1)).is_none());
     let heap = [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.9), at(0.0, 1.0, 0.8), at(1.0, 1.0, 0.1), at(0.4, 0.7, -1.0)];
     assert!(group(&heap, Point3::new(0.0, 0.0, 9.0)).is_none());
+}
+
+#[test]
+fn the_variance_of_a_plane_at_a_place_is_the_scatter_of_planes_fitted_there() {
+    let mut random = Random::stream(131, 0);
+    let limits = MergeLimits::default();
+    let sigma = 0.01;
+    let places: Vec<[f64; 2]> = (0..30).map(|_| [random.normal(), 0.5 * random.normal()]).collect();
+    let at = Point3::new(1.2, -0.7, 0.0);
+    let eye = Point3::new(0.0, 0.0, 9.0);
+    let (mut stated, mut scatter, mut count) = (0.0, 0.0, 0.0);
+    for _ in 0..3000 {
+        let known = |p: &[f64; 2]| KnownPoint {
+            at: Point3::new(p[0], p[1], sigma * random.normal()),
+            covariance: crate::geometry::Matrix3::identity() * (sigma * sigma),
+        };
+        let own: Vec<KnownPoint> = places.iter().map(known).collect();
+        let Some(group) = PlaneGroup::of(PlaneOf::A, &own, &[], &eye, &limits) else { continue };
+        if group.plane_points < 30 {
+            continue;
+        }
+        // The height of the fitted plane where the truth is zero.
+        scatter += group.plane.plane.signed_distance(&at).powi(2);
+        stated += group.plane_variance(&at);
+        count += 1.0;
+    }
+    assert!(count > 2000.0, "{count}");
+    let ratio = stated / scatter;
+    // The foretold variance is in it where the measured one happens to be less: some per cent more.
+    assert!((0.9..1.3).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn few_points_a_heap_and_a_plane_seen_edge_on_are_none() {
+    let mut random = Random::stream(132, 0);
+    let limits = MergeLimits::default();
+    let mut points = |across: f64, count: usize| -> Vec<KnownPoint> {
+        let known =
+            |at| KnownPoint { at, covariance: crate::geometry::Matrix3::identity() * (0.5 * across + 1e-3).powi(2) };
+        (0..count).map(|_| known(Point3::new(random.normal(), random.normal(), across * random.normal()))).collect()
+    };
+    let above = Point3::new(0.0, 0.0, 9.0);
+    let of = |own: &[KnownPoint], eye: &Point3<f64>| PlaneGroup::of(PlaneOf::B, own, &[], eye, &limits).is_some();
+    let flat = points(0.001, 20);
+    assert!(of(&flat, &above));
+    assert!(!of(&flat[..limits.planes.fewest_points - 1], &above));
+    assert!(!of(&flat, &Point3::new(9.0, 0.0, 0.1)), "from the side");
+    assert!(!of(&points(1.0, 20), &above), "a heap");
 }

@@ -97,6 +97,8 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     }
     let no_city = match read_city(path, &[], &CityOptions::default()) {
         Ok(city) => return Ok(Inspection::of_city(path, city_format(path), &city)),
+        // As above.
+        Err(error) if !matches!(error, CityError::OtherFormat { .. }) => return Err(error.into()),
         Err(error) => error,
     };
     if let Ok(points) = read_control_points(path) {

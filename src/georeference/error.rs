@@ -33,6 +33,11 @@ pub enum GeoreferenceError {
          nor scale; give --points or --start: {source_name}"
     )]
     TooNear { spread_m: f64, noise_m: f64, source_name: String },
+    #[error(
+        "no more than {believed} of {all} positions fit the cameras of the reconstruction together; check that the names are those of the same \
+         photographs, and that the coordinates are metres or degrees: {source_name}"
+    )]
+    Scattered { believed: usize, all: usize, source_name: String },
     #[error("none of the positions has a height; add them, or give --start: {source_name}")]
     NoHeights { source_name: String },
     #[error(

@@ -17,7 +17,7 @@ pub(super) struct Matched {
 }
 
 /// One place is none to compare with.
-pub(super) const LEAST_POSITIONS: usize = 2;
+const LEAST_POSITIONS: usize = 2;
 
 /// Matches names and projects places.
 pub(super) fn matched(

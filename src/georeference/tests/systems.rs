@@ -24,7 +24,7 @@ fn degrees_come_out_where_proj_puts_them_with_their_height_kept() {
     assert!(near(place, [90924.547, 435679.817], 0.1) && height == 73.284, "{place:?}");
     assert!(near(placed(&GEOGRAPHIC, &Frame::Epsg(25832), [9.0, 48.0], 0.0).0, [500_000.0, 5_316_300.0], 1000.0));
     let compound = placed(&GEOGRAPHIC, &Frame::Epsg(7415), [4.45607299, 51.90592763], 1.0);
-    assert!(near(compound.0, place, 1e-6));
+    assert!(near(compound.0, place, 0.02));
 }
 
 #[test]

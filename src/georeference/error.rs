@@ -14,9 +14,9 @@ pub enum GeoreferenceError {
     )]
     UnknownSystem { name: String },
     #[error(
-        "{place} cannot be taken from {from} to {to} ({reason}); check the coordinate systems and the order of the axes: {source_name}"
+        "{place} cannot be taken {way} ({reason}); check the coordinate systems and the order of the axes: {source_name}"
     )]
-    Projection { place: String, from: String, to: String, reason: String, source_name: String },
+    Projection { place: String, way: String, reason: String, source_name: String },
     #[error("{given} may be {first} or {second}; write its folder before the name: {source_name}")]
     TwoPhotographs { given: String, first: String, second: String, source_name: String },
     #[error(

@@ -96,7 +96,7 @@ pub(super) fn level_fit(couples: &[Couple]) -> Option<LevelFit> {
 /// The residual that half of those are below which a pair does not fit by itself; infinite of none.
 fn middling_of(mut residuals: Vec<f64>) -> f64 {
     residuals.sort_by(f64::total_cmp);
-    residuals.get((residuals.len() + 1) / 2).or(residuals.last()).copied().unwrap_or(f64::INFINITY)
+    residuals.get(residuals.len().div_ceil(2)).or(residuals.last()).copied().unwrap_or(f64::INFINITY)
 }
 
 /// All pairs, or an even choice of them.

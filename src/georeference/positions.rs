@@ -202,7 +202,7 @@ fn warnings(
     let (given, known) = (file.positions.len(), matched.len());
     if known < given {
         warnings.push(format!(
-            "{} of {given} positions are of photographs that the reconstruction does not have",
+            "{} of {given} positions are of photographs that the reconstruction does not have, or has already",
             given - known
         ));
     }

@@ -191,3 +191,55 @@ fn a_start_that_cannot_reach_the_city_says_how_far_it_is() {
     let empty = crate::city::CityModel::default();
     assert_eq!(far.distance_to_city(&[Point3::origin()], &empty).unwrap(), 0.0);
 }
+
+#[test]
+fn positions_of_another_flight_are_refused_as_scattered_or_without_scale() {
+    let capture = ring(Held::Level);
+    for seed in 0..10 {
+        let mut random = crate::robust::Random::stream(seed, 3);
+        let mut file = capture.positions(0.0, Vector3::zeros(), seed);
+        for position in &mut file.positions {
+            position.east_north = Some([90_000.0 + 900.0 * random.unit(), 435_000.0 + 900.0 * random.unit()]);
+        }
+        let message = estimate(&capture, &file).map(|found| found.source).unwrap_err().to_string();
+        assert!(message.contains("fit the cameras") || message.contains("neither heading nor scale"), "{message}");
+    }
+}
+
+#[test]
+fn two_positions_of_one_photograph_count_once_and_strangers_are_counted() {
+    let capture = ring(Held::Level);
+    let mut file = capture.positions(0.0, Vector3::zeros(), 1);
+    let mut twice = file.positions[3].clone();
+    twice.east_north = Some([0.0, 0.0]);
+    file.positions.push(twice);
+    let mut stranger = file.positions[0].clone();
+    stranger.name = "elsewhere.jpg".into();
+    file.positions.push(stranger);
+    let found = estimate(&capture, &file).unwrap();
+    assert!(found.source.starts_with("positions of 21 photographs"), "{}", found.source);
+    assert_eq!(
+        found.warnings,
+        ["2 of 23 positions are of photographs that the reconstruction does not have, or has already"]
+    );
+}
+
+#[test]
+fn warnings_of_the_file_are_handed_on() {
+    let capture = ring(Held::Level);
+    let mut file = capture.positions(0.0, Vector3::zeros(), 1);
+    file.warnings.push("3 photographs without a GPS position".into());
+    assert_eq!(estimate(&capture, &file).unwrap().warnings, file.warnings);
+}
+
+#[test]
+fn large_coordinates_lose_nothing() {
+    let mut capture = ring(Held::Level);
+    let aside = Vector3::new(500_000.0, 5_300_000.0, 0.0);
+    capture.truth.translation += aside;
+    capture.city.origin += aside;
+    capture.centers.iter_mut().for_each(|center| *center += aside);
+    let found = estimate(&capture, &capture.positions(0.0, Vector3::zeros(), 1)).unwrap();
+    let place = found.start.city_from_sfm().apply(&found.middle);
+    assert!((place - capture.truth.apply(&found.middle)).norm() < 0.05);
+}

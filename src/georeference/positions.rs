@@ -33,6 +33,8 @@ const HEIGHT_M: f64 = 10.0;
 /// So many positions tell their own noise by their residuals; of fewer it is at least this, metres. Chosen.
 const ENOUGH_POSITIONS: usize = 6;
 const USUAL_NOISE_M: f64 = 5.0;
+/// So many of the positions must fit together: of positions of other photographs half can be made to. Chosen.
+const LEAST_SHARE: f64 = 0.66;
 /// The most that noise may be of the cameras' spread. Derived: positions that have nothing to do with the cameras are fitted with a spread of
 /// three times their noise at most, in 99 of 100 cases.
 const MOST_NOISE: f64 = 0.25;
@@ -66,7 +68,7 @@ pub fn from_positions(
     };
     let noise_m = noise_of(&fit, file);
     let (believed, all) = (fit.believed.len(), placed(&matched).len());
-    if 2 * believed < all {
+    if (believed as f64) < LEAST_SHARE * all as f64 {
         return Err(GeoreferenceError::Scattered { believed, all, source_name: source_name.into() });
     }
     if noise_m > MOST_NOISE * fit.spread_m {

@@ -46,7 +46,7 @@ impl PlaceSources {
             let Some(photos) = args.photos.as_ref().filter(|_| city_frame.is_some()) else {
                 bail!(
                     "nothing says where the reconstruction is, and searching without that is not built yet; give --positions (EXIF, COLMAP \
-                     database, geo.txt, name X Y Z, ...), or --start FILE (`cityweld align --help` shows the forms); photographs \
+                     database, geo.txt, name X Y Z, ...), --points, or --start FILE (`cityweld align --help` shows the forms); photographs \
                      with GPS need --crs of the city"
                 );
             };

@@ -38,6 +38,11 @@ pub enum GeoreferenceError {
          photographs, and that the coordinates are metres or degrees: {source_name}"
     )]
     Scattered { believed: usize, all: usize, source_name: String },
+    #[error(
+        "the positions are the mirror image of the cameras, so east and north are exchanged; write east (X, or the longitude) before north, or \
+         name the columns in a header: {source_name}"
+    )]
+    Mirrored { source_name: String },
     #[error("none of the positions has a height; add them, or give --start: {source_name}")]
     NoHeights { source_name: String },
     #[error(

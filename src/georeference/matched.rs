@@ -16,6 +16,13 @@ pub(super) struct Matched {
     pub gravity_in_cam: Option<[f64; 3]>,
 }
 
+impl Matched {
+    /// North before east, as some files have it.
+    pub fn with_axes_exchanged(&self) -> Matched {
+        Matched { east_north: self.east_north.map(|[east, north]| [north, east]), ..self.clone() }
+    }
+}
+
 /// One place is none to compare with.
 const LEAST_POSITIONS: usize = 2;
 

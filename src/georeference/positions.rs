@@ -67,12 +67,15 @@ pub fn from_positions(
         });
     };
     let noise_m = noise_of(&fit, file);
-    let (believed, all) = (fit.believed.len(), placed(&matched).len());
-    if (believed as f64) < LEAST_SHARE * all as f64 {
-        return Err(GeoreferenceError::Scattered { believed, all, source_name: source_name.into() });
-    }
-    if noise_m > MOST_NOISE * fit.spread_m {
-        return Err(too_near(fit.spread_m / (believed as f64).sqrt(), noise_m, source_name));
+    if let Some(error) = misfit(&fit, noise_m, &matched, source_name) {
+        let exchanged: Vec<Matched> = matched.iter().map(Matched::with_axes_exchanged).collect();
+        let fits_exchanged = best_fit(&exchanged, sfm, city, &Limits::default())
+            .is_some_and(|(_, fit)| misfit(&fit, noise_of(&fit, file), &exchanged, source_name).is_none());
+        return Err(if fits_exchanged {
+            GeoreferenceError::Mirrored { source_name: source_name.into() }
+        } else {
+            error
+        });
     }
     let local = city_from_sfm(&level, &fit);
     let heights = reading(&to_city, &sfm.points, &local, city);
@@ -90,6 +93,16 @@ pub fn from_positions(
     );
     let warnings = warnings(file, &matched, &fit, &level, sfm, city);
     Ok(Estimate { start, middle: middle(&sfm.points), source, warnings, points: Vec::new() })
+}
+
+/// Why positions do not fit the cameras.
+fn misfit(fit: &LevelFit, noise_m: f64, matched: &[Matched], source_name: &str) -> Option<GeoreferenceError> {
+    let (believed, all) = (fit.believed.len(), placed(matched).len());
+    if (believed as f64) < LEAST_SHARE * all as f64 {
+        return Some(GeoreferenceError::Scattered { believed, all, source_name: source_name.into() });
+    }
+    let spread_m = fit.spread_m / (believed as f64).sqrt();
+    (noise_m > MOST_NOISE * fit.spread_m).then(|| too_near(spread_m, noise_m, source_name))
 }
 
 /// Of a position, metres; where they are few, no less than is stated of them or usual.

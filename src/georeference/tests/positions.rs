@@ -193,6 +193,15 @@ fn a_start_that_cannot_reach_the_city_says_how_far_it_is() {
 }
 
 #[test]
+fn north_before_east_is_told_as_such() {
+    let capture = ring(Held::Level);
+    let mut file = capture.positions(1.0, Vector3::zeros(), 1);
+    file.positions.iter_mut().filter_map(|p| p.east_north.as_mut()).for_each(|place| place.reverse());
+    let message = estimate(&capture, &file).unwrap_err().to_string();
+    assert!(message.contains("east and north are exchanged") && message.contains("positions.txt"), "{message}");
+}
+
+#[test]
 fn positions_of_another_flight_are_refused_as_scattered_or_without_scale() {
     let capture = ring(Held::Level);
     for seed in 0..10 {

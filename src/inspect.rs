@@ -100,6 +100,8 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     }
     let no_city = match read_city_contents(&[path.to_owned()]) {
         Ok(contents) => return Ok(Inspection::of_city(path, &contents)),
+        // As above.
+        Err(error) if !matches!(error, CityError::OtherFormat { .. }) => return Err(error.into()),
         Err(error) => error,
     };
     if let Ok(points) = read_control_points(path) {

@@ -128,7 +128,7 @@ fn sources_that_place_nothing_are_refused_with_what_to_do() {
     refused(&room, &["--positions", &geo, "--crs", "RD"], &["--crs", "EPSG:28992"]);
     refused(&room, &["--positions", "none.txt"], &["cannot read the positions", "none.txt"]);
     refused(&room, &["--positions", "city.obj"], &["--positions is a city model"]);
-    refused(&room, &["--points", &geo], &["line 1"]);
+    refused(&room, &["--points", &geo], &["line 2"]);
     refused(&room, &["--photos", &data("exif")], &["--positions", "--crs"]);
     refused(&room, &[], &["--positions", "--points", "--start"]);
     let words = std::fs::read_to_string(data("name_x_y_z.txt")).unwrap();
@@ -137,7 +137,7 @@ fn sources_that_place_nothing_are_refused_with_what_to_do() {
         format!("{} {} {} {}\n", words[0], words[2], words[1], words[3])
     });
     std::fs::write(room.path().join("swapped.txt"), swapped.collect::<String>()).unwrap();
-    refused(&room, &["--positions", "swapped.txt"], &["km from the city's nearest facet", "east before north"]);
+    refused(&room, &["--positions", "swapped.txt"], &["mirror image", "east and north are exchanged", "swapped.txt"]);
 }
 
 #[test]

@@ -83,7 +83,8 @@ impl Inputs {
         let estimate = plan.place.estimate(&sfm, &city)?;
         let distance_m = estimate.distance_to_city(&sfm.points, &city)?;
         voice.detail(&format!("start: {}; {distance_m:.1} m from the nearest facet", estimate.source));
-        let superpixels = match &plan.superpixels {
+        // A dry run does without what takes minutes.
+        let superpixels = match plan.superpixels.as_ref().filter(|_| plan.output.is_some()) {
             None => None,
             Some(source) => {
                 let lifted = lift_superpixels(&sfm, source, &SuperpixelOptions::default(), &voice.bar)?;

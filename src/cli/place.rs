@@ -44,7 +44,7 @@ impl PlaceSources {
             let Some(photos) = args.photos.as_ref() else {
                 bail!(
                     "nothing says where the reconstruction is, and searching without that is not built yet; give --positions (EXIF, COLMAP \
-                     database, geo.txt, name X Y Z, ...), --photos with GPS, or --start FILE (`cityweld align --help` shows the forms)"
+                     database, geo.txt, name X Y Z, ...), --points, --photos with GPS, or --start FILE (`cityweld align --help` shows the forms)"
                 );
             };
             let read = named_positions(photos)

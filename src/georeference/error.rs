@@ -14,9 +14,9 @@ pub enum GeoreferenceError {
     )]
     UnknownSystem { name: String },
     #[error(
-        "{place} cannot be taken from {from} to {to} ({reason}); check the coordinate systems and the order of the axes: {source_name}"
+        "{place} cannot be taken {way} ({reason}); check the coordinate systems and the order of the axes: {source_name}"
     )]
-    Projection { place: String, from: String, to: String, reason: String, source_name: String },
+    Projection { place: String, way: String, reason: String, source_name: String },
     #[error("{given} may be {first} or {second}; write its folder before the name: {source_name}")]
     TwoPhotographs { given: String, first: String, second: String, source_name: String },
     #[error(
@@ -33,6 +33,16 @@ pub enum GeoreferenceError {
          nor scale; give --points or --start: {source_name}"
     )]
     TooNear { spread_m: f64, noise_m: f64, source_name: String },
+    #[error(
+        "no more than {believed} of {all} positions fit the cameras of the reconstruction together; check that the names are those of the same \
+         photographs, and that the coordinates are metres or degrees: {source_name}"
+    )]
+    Scattered { believed: usize, all: usize, source_name: String },
+    #[error(
+        "the positions are the mirror image of the cameras, so east and north are exchanged; write east (X, or the longitude) before north, or \
+         name the columns in a header: {source_name}"
+    )]
+    Mirrored { source_name: String },
     #[error("none of the positions has a height; add them, or give --start: {source_name}")]
     NoHeights { source_name: String },
     #[error(

@@ -34,12 +34,15 @@ pub(super) struct LevelFit {
     pub believed: Vec<usize>,
     /// Of a position about the fit, each horizontal axis, metres.
     pub noise_m: f64,
-    /// Root of the sum of squared distances of the believed positions from their middle, metres.
+    /// Root of the sum of squared distances of the believed cameras from their middle, metres, as they are fitted: what noise has blown up
+    /// does not count.
     pub spread_m: f64,
-    /// The median horizontal residual of all couples, metres: by this fits are compared.
-    pub median_m: f64,
+    /// The middling horizontal residual of all couples, metres: by this fits are compared.
+    pub middling_m: f64,
 }
 
+/// Fewer couples cannot tell which of them is wrong: all take part.
+const LEAST_FOR_CONSENSUS: usize = 5;
 /// Pairs that are tried; of two in three good positions four in nine pairs are good. Chosen: a tenth of a second for thousands of photographs.
 const MOST_PAIRS: usize = 2000;
 /// A median of |r| over the sigma of one axis: r follows a Rayleigh distribution, whose median is sqrt(2 ln 2) sigmas.
@@ -57,31 +60,43 @@ pub(super) fn level_fit(couples: &[Couple]) -> Option<LevelFit> {
     let a: Vec<Planar> = couples.iter().map(|c| Planar::new(c.level.x, c.level.y)).collect();
     let b: Vec<Planar> = couples.iter().map(|c| Planar::new(c.east_north[0], c.east_north[1])).collect();
     let residuals = |(z, t): (Planar, Planar)| a.iter().zip(&b).map(move |(a, b)| (b - z * a - t).norm());
-    let median_of = |map| median(&mut residuals(map).collect::<Vec<f64>>()).unwrap_or(f64::INFINITY);
-    let maps = pairs(couples.len()).filter_map(|(i, j)| of_pair([a[i], a[j]], [b[i], b[j]]));
-    let (median_m, mut map) = maps.map(|map| (median_of(map), map)).min_by(|x, y| x.0.total_cmp(&y.0))?;
-    let mut believed: Vec<usize> = Vec::new();
-    let mut gate_m = (GATE_SIGMAS * median_m / MEDIAN_PER_SIGMA).max(LEAST_GATE_M);
-    for _ in 0..ROUNDS {
-        believed = residuals(map).enumerate().filter(|(_, r)| *r <= gate_m).map(|(i, _)| i).collect();
-        map = least_squares(&believed, &a, &b)?;
-        gate_m = (GATE_SIGMAS * noise(&believed, residuals(map))).max(LEAST_GATE_M);
+    let middling = |map| middling_of(residuals(map).collect());
+    let mut believed: Vec<usize> = (0..couples.len()).collect();
+    let mut map = least_squares(&believed, &a, &b)?;
+    if couples.len() >= LEAST_FOR_CONSENSUS {
+        let maps = pairs(couples.len()).filter_map(|(i, j)| of_pair([a[i], a[j]], [b[i], b[j]]));
+        let (least_m, best) = maps.map(|map| (middling(map), map)).min_by(|x, y| x.0.total_cmp(&y.0))?;
+        map = best;
+        // Few residuals are small by chance (Rousseeuw and Leroy 1987, 5.1).
+        let of_few = 1.0 + 5.0 / (couples.len() - 2) as f64;
+        let mut gate_m = (GATE_SIGMAS * of_few * least_m / MEDIAN_PER_SIGMA).max(LEAST_GATE_M);
+        for _ in 0..ROUNDS {
+            believed = residuals(map).enumerate().filter(|(_, r)| *r <= gate_m).map(|(i, _)| i).collect();
+            map = least_squares(&believed, &a, &b)?;
+            gate_m = (GATE_SIGMAS * noise(&believed, residuals(map))).max(LEAST_GATE_M);
+        }
     }
     let (z, t) = map;
     let scale = z.norm();
     let mut heights: Vec<f64> =
         believed.iter().filter_map(|&i| Some(couples[i].height_m? - scale * couples[i].level.z)).collect();
     let up_m = median(&mut heights)?;
-    let middle = believed.iter().map(|&i| b[i]).sum::<Planar>() / believed.len() as f64;
+    let middle = believed.iter().map(|&i| a[i]).sum::<Planar>() / believed.len() as f64;
     Some(LevelFit {
         scale,
         heading_rad: z.arg(),
         shift: Vector3::new(t.re, t.im, up_m),
         noise_m: noise(&believed, residuals(map)),
-        spread_m: believed.iter().map(|&i| (b[i] - middle).norm_sqr()).sum::<f64>().sqrt(),
-        median_m: median_of(map),
+        spread_m: scale * believed.iter().map(|&i| (a[i] - middle).norm_sqr()).sum::<f64>().sqrt(),
+        middling_m: middling(map),
         believed,
     })
+}
+
+/// The residual that half of those are below which a pair does not fit by itself; infinite of none.
+fn middling_of(mut residuals: Vec<f64>) -> f64 {
+    residuals.sort_by(f64::total_cmp);
+    residuals.get(residuals.len().div_ceil(2)).or(residuals.last()).copied().unwrap_or(f64::INFINITY)
 }
 
 /// All pairs, or an even choice of them.

@@ -16,8 +16,15 @@ pub(super) struct Matched {
     pub gravity_in_cam: Option<[f64; 3]>,
 }
 
+impl Matched {
+    /// North before east, as some files have it.
+    pub fn with_axes_exchanged(&self) -> Matched {
+        Matched { east_north: self.east_north.map(|[east, north]| [north, east]), ..self.clone() }
+    }
+}
+
 /// One place is none to compare with.
-pub(super) const LEAST_POSITIONS: usize = 2;
+const LEAST_POSITIONS: usize = 2;
 
 /// Matches names and projects places.
 pub(super) fn matched(

@@ -14,7 +14,7 @@ use super::extent::middle;
 use super::heights::reading;
 use super::level::{Levelled, levelled};
 use super::level_fit::{Couple, LevelFit, level_fit};
-use super::matched::{LEAST_POSITIONS, Matched, matched};
+use super::matched::{Matched, matched};
 use super::projection::ToCity;
 use crate::city::CityModel;
 use crate::format::positions::{Frame, PositionsFile, StoredPosition};
@@ -30,8 +30,14 @@ const SHARED_M: f64 = 4.0;
 const LEAST_SHARED_M: f64 = 0.5;
 /// Heights are two or three times worse, and what they are above is often not said.
 const HEIGHT_M: f64 = 10.0;
-/// Noise of a position where no more than two tell nothing of it, metres.
+/// So many positions tell their own noise by their residuals; of fewer it is at least this, metres. Chosen.
+const ENOUGH_POSITIONS: usize = 6;
 const USUAL_NOISE_M: f64 = 5.0;
+/// So many of the positions must fit together: of positions of other photographs half can be made to. Chosen.
+const LEAST_SHARE: f64 = 0.66;
+/// The most that noise may be of the cameras' spread. Derived: positions that have nothing to do with the cameras are fitted with a spread of
+/// three times their noise at most, in 99 of 100 cases.
+const MOST_NOISE: f64 = 0.25;
 /// Errors of a receiver drift: those of neighbouring photographs are alike, so many tell less than if each erred by itself. Chosen; measured
 /// on independent noise of 3 m: without it one start in forty is more than three sigmas of heading off.
 const DRIFT: f64 = 1.5;
@@ -60,13 +66,16 @@ pub fn from_positions(
             GeoreferenceError::NoHeights { source_name: source_name.into() }
         });
     };
-    let noise_m = if fit.believed.len() > LEAST_POSITIONS {
-        fit.noise_m
-    } else {
-        stated(file, |p| p.sigma_m).unwrap_or(USUAL_NOISE_M)
-    };
-    if noise_m >= fit.spread_m {
-        return Err(too_near(fit.spread_m / (fit.believed.len() as f64).sqrt(), noise_m, source_name));
+    let noise_m = noise_of(&fit, file);
+    if let Some(error) = misfit(&fit, noise_m, &matched, source_name) {
+        let exchanged: Vec<Matched> = matched.iter().map(Matched::with_axes_exchanged).collect();
+        let fits_exchanged = best_fit(&exchanged, sfm, city, &Limits::default())
+            .is_some_and(|(_, fit)| misfit(&fit, noise_of(&fit, file), &exchanged, source_name).is_none());
+        return Err(if fits_exchanged {
+            GeoreferenceError::Mirrored { source_name: source_name.into() }
+        } else {
+            error
+        });
     }
     let local = city_from_sfm(&level, &fit);
     let heights = reading(&to_city, &sfm.points, &local, city);
@@ -86,6 +95,24 @@ pub fn from_positions(
     Ok(Estimate { start, middle: middle(&sfm.points), source, warnings, points: Vec::new() })
 }
 
+/// Why positions do not fit the cameras.
+fn misfit(fit: &LevelFit, noise_m: f64, matched: &[Matched], source_name: &str) -> Option<GeoreferenceError> {
+    let (believed, all) = (fit.believed.len(), placed(matched).len());
+    if (believed as f64) < LEAST_SHARE * all as f64 {
+        return Some(GeoreferenceError::Scattered { believed, all, source_name: source_name.into() });
+    }
+    let spread_m = fit.spread_m / (believed as f64).sqrt();
+    (noise_m > MOST_NOISE * fit.spread_m).then(|| too_near(spread_m, noise_m, source_name))
+}
+
+/// Of a position, metres; where they are few, no less than is stated of them or usual.
+fn noise_of(fit: &LevelFit, file: &PositionsFile) -> f64 {
+    if fit.believed.len() >= ENOUGH_POSITIONS {
+        return fit.noise_m;
+    }
+    fit.noise_m.max(stated(file, |p| p.sigma_m).unwrap_or(USUAL_NOISE_M))
+}
+
 fn too_near(spread_m: f64, noise_m: f64, source_name: &str) -> GeoreferenceError {
     GeoreferenceError::TooNear { spread_m, noise_m, source_name: source_name.into() }
 }
@@ -101,7 +128,7 @@ fn best_fit(
         let fit = level_fit(&couples(matched, &level, sfm, city))?;
         Some((level, fit))
     });
-    fits.min_by(|a, b| a.1.median_m.total_cmp(&b.1.median_m))
+    fits.min_by(|a, b| a.1.middling_m.total_cmp(&b.1.middling_m))
 }
 
 /// Positions in the city's local frame, in the order of `matched`, which all have one.
@@ -190,7 +217,7 @@ fn warnings(
     let (given, known) = (file.positions.len(), matched.len());
     if known < given {
         warnings.push(format!(
-            "{} of {given} positions are of photographs that the reconstruction does not have",
+            "{} of {given} positions are of photographs that the reconstruction does not have, or has already",
             given - known
         ));
     }

@@ -92,8 +92,7 @@ impl ToCity {
         };
         let end = transformed(from, to, start).map_err(|reason| GeoreferenceError::Projection {
             place: format!("{}, {}", start[0], start[1]),
-            from: self.from.clone(),
-            to: self.to.clone(),
+            way: format!("from {} to {}", self.from, self.to),
             reason,
             source_name: self.source_name.clone(),
         })?;

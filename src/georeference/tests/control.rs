@@ -107,7 +107,7 @@ fn residuals_beyond_the_stated_sigmas_widen_those_of_the_start() {
     let mut file = couples(&capture, 4);
     let stated = estimate(&capture, &file).unwrap().start.sigmas().position_m;
     for (k, point) in file.points.iter_mut().enumerate() {
-        point.height_m += if k % 2 == 0 { 2.0 } else { -2.0 };
+        point.height_m += if k % 2 == 0 { 6.0 } else { -6.0 };
     }
     let found = estimate(&capture, &file).unwrap();
     assert!(found.start.sigmas().position_m > 1.5 * stated, "{} {stated}", found.start.sigmas().position_m);

@@ -24,7 +24,7 @@ fn degrees_come_out_where_proj_puts_them_with_their_height_kept() {
     assert!(near(place, [90924.547, 435679.817], 0.1) && height == 73.284, "{place:?}");
     assert!(near(placed(&GEOGRAPHIC, &Frame::Epsg(25832), [9.0, 48.0], 0.0).0, [500_000.0, 5_316_300.0], 1000.0));
     let compound = placed(&GEOGRAPHIC, &Frame::Epsg(7415), [4.45607299, 51.90592763], 1.0);
-    assert!(near(compound.0, place, 1e-6));
+    assert!(near(compound.0, place, 0.02));
 }
 
 #[test]
@@ -65,4 +65,45 @@ fn heights_are_read_above_the_ellipsoid_or_the_sea_as_the_city_tells() {
         assert!(distance < 0.5 && found.source.contains(says), "{distance} m, {}", found.source);
         assert!(found.start.sigmas().height_m >= 10.0);
     }
+}
+
+#[test]
+fn a_file_in_the_systems_own_coordinates_is_taken_as_it_stands() {
+    let place = [90_924.5, 435_679.8];
+    for (from, city) in [
+        (Frame::OfTheCity, Some(RD)),
+        (RD, Some(RD)),
+        (Frame::OfTheCity, None),
+        (RD, None),
+        (RD, Some(Frame::OfTheCity)),
+    ] {
+        let way = ToCity::new(&from, city.as_ref(), "x").unwrap();
+        assert_eq!(way.place(place, Some(3.0)).unwrap().east_north, place, "{from:?} {city:?}");
+        assert!(way.keeps_heights() && !way.is_geographic() && way.geographic(place).is_none());
+    }
+    assert!(ToCity::new(&GEOGRAPHIC, None, "x").is_err());
+    let projected = ToCity::new(&Frame::Epsg(32631), Some(&RD), "x").unwrap();
+    assert!(!projected.keeps_heights() && !projected.is_geographic());
+}
+
+#[test]
+fn a_place_beyond_a_projection_is_an_error_with_both_systems() {
+    let way = ToCity::new(&GEOGRAPHIC, Some(&Frame::Epsg(25832)), "geo.txt").unwrap();
+    // Latitude and longitude exchanged, at a latitude that no place has.
+    let Err(error) = way.place([51.9, 104.4], None) else { panic!("104 degrees of latitude are a place") };
+    let message = error.to_string();
+    assert!(
+        message.contains("EPSG:4326") && message.contains("EPSG:25832") && message.ends_with("geo.txt"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_projected_system_that_is_no_code_is_taken_by_its_own_words() {
+    let utm = Frame::Proj("+proj=utm +zone=31 +datum=WGS84 +units=m +no_defs".into());
+    let (by_words, _) = placed(&GEOGRAPHIC, &utm, [4.45, 51.9], 0.0);
+    assert!(near(by_words, placed(&GEOGRAPHIC, &Frame::Epsg(32631), [4.45, 51.9], 0.0).0, 1e-3));
+    // There and back.
+    let (back, _) = placed(&utm, &GEOGRAPHIC, by_words, 0.0);
+    assert!(near(back, [4.45, 51.9], 1e-9), "{back:?}");
 }

@@ -10,6 +10,7 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::json;
 
 use super::super::file::{LARGEST_MODEL_BYTES, open_regular, read_at_most};
+use super::extensions::Extensions;
 use super::{GltfError, GltfProblem};
 
 /// Writers differ on whether the last group is filled up.
@@ -22,6 +23,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 pub(super) struct Buffers<'a> {
     blob: Option<&'a [u8]>,
     folder: &'a Path,
+    extensions: &'a Extensions,
     loaded: BTreeMap<usize, Loaded<'a>>,
     /// Files beside this one, by their real path and how much was asked for: many buffers may name one file.
     files: BTreeMap<(PathBuf, u64), Rc<Vec<u8>>>,
@@ -46,13 +48,18 @@ impl Loaded<'_> {
 }
 
 impl<'a> Buffers<'a> {
-    pub fn new(blob: Option<&'a [u8]>, folder: &'a Path) -> Buffers<'a> {
-        Buffers { blob, folder, loaded: BTreeMap::new(), files: BTreeMap::new(), bytes_beside: 0 }
+    pub fn new(blob: Option<&'a [u8]>, folder: &'a Path, extensions: &'a Extensions) -> Buffers<'a> {
+        Buffers { blob, folder, extensions, loaded: BTreeMap::new(), files: BTreeMap::new(), bytes_beside: 0 }
     }
 
     /// The bytes of a buffer that was loaded.
     pub fn bytes(&self, index: usize) -> Option<&[u8]> {
         self.loaded.get(&index).map(Loaded::bytes)
+    }
+
+    /// What the file says of its extensions.
+    pub fn extensions(&self) -> &Extensions {
+        self.extensions
     }
 
     /// Bytes that were read from files beside.
@@ -65,6 +72,7 @@ impl<'a> Buffers<'a> {
         if self.loaded.contains_key(&index) {
             return Ok(());
         }
+        self.extensions.check_buffer(index)?;
         let claimed = buffer.byte_length.0;
         let at = |problem| GltfError::at(format!("buffers[{index}]"), problem);
         let bytes = match &buffer.uri {

@@ -1,0 +1,49 @@
+//! Every reader meets files that are cut or changed at any byte: it says what is wrong, or reads something sound.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::assert_sound;
+use crate::format::citygml::read_citygml;
+use crate::format::surface_error::SurfaceError;
+use crate::format::surfaces::SurfaceFile;
+
+/// Cuts the file before every byte, and changes every byte in three ways. Returns how many of these were refused.
+pub fn mutate(bytes: &[u8], read: impl Fn(&[u8]) -> Result<SurfaceFile, SurfaceError>) -> usize {
+    let mut refused = 0;
+    let mut check = |bytes: &[u8]| match read(bytes) {
+        Ok(file) => assert_sound(&file),
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            refused += 1;
+        }
+    };
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    for at in 0..bytes.len() {
+        check(&bytes[..at]);
+        let mut changed = bytes.to_vec();
+        for byte in [changed[at] ^ 1 << (random.next_u32() % 8), 0, 0xFF] {
+            changed[at] = byte;
+            check(&changed);
+        }
+        // A byte too few and one too many.
+        changed.remove(at);
+        check(&changed);
+    }
+    refused
+}
+
+const CITYGML: &str = r##"<?xml version="1.0"?><CityModel xmlns="http://www.opengis.net/citygml/2.0" xmlns:b="http://www.opengis.net/citygml/building/2.0" xmlns:gml="http://www.opengis.net/gml" xmlns:x="http://www.w3.org/1999/xlink">
+<cityObjectMember><b:Building gml:id="h"><b:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface><gml:surfaceMember x:href="#p"/><gml:surfaceMember><gml:OrientableSurface orientation="-"><gml:baseSurface x:href="#q"/></gml:OrientableSurface></gml:surfaceMember></gml:CompositeSurface></gml:exterior></gml:Solid></b:lod2Solid>
+<b:boundedBy><b:WallSurface><b:lod2MultiSurface><gml:MultiSurface srsName="EPSG:1" srsDimension="3"><gml:surfaceMember><gml:Polygon gml:id="p"><gml:exterior><gml:LinearRing><gml:posList>0 0 0 4 0 0 4 0 4 0 0 4 0 0 0</gml:posList></gml:LinearRing></gml:exterior><gml:interior><gml:LinearRing><gml:pos>1 0 1</gml:pos><gml:pos>1 0 2</gml:pos><gml:pos>2 0 2</gml:pos><gml:pos>1 0 1</gml:pos></gml:LinearRing></gml:interior></gml:Polygon></gml:surfaceMember></gml:MultiSurface></b:lod2MultiSurface></b:WallSurface></b:boundedBy></b:Building></cityObjectMember>
+<cityObjectMember><v:Tree xmlns:v="v" gml:id="t"><v:lod1ImplicitRepresentation><ImplicitGeometry><transformationMatrix>1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</transformationMatrix><relativeGMLGeometry><gml:MultiSurface gml:id="q"><gml:surfaceMember><gml:Triangle><gml:exterior><gml:LinearRing><gml:coordinates>0,0,0 1,0,0 1,1,&#48;</gml:coordinates></gml:LinearRing></gml:exterior></gml:Triangle></gml:surfaceMember></gml:MultiSurface></relativeGMLGeometry><referencePoint><gml:Point><gml:pos>7 7 7</gml:pos></gml:Point></referencePoint></ImplicitGeometry></v:lod1ImplicitRepresentation></v:Tree></cityObjectMember></CityModel>
+"##;
+
+#[test]
+fn citygml_cut_or_changed_at_any_byte_is_read_or_refused() {
+    let read = |bytes: &[u8]| read_citygml(bytes);
+    let file = read_citygml(CITYGML.as_bytes()).unwrap();
+    assert_eq!((file.surfaces.len(), file.objects.len()), (2, 2));
+    let refused = mutate(CITYGML.as_bytes(), read);
+    assert!(refused > CITYGML.len(), "cut files alone are as many, {refused}");
+}

@@ -1,0 +1,94 @@
+//! Real files of data/formats, with the counts that two independent readers agree on (its README.md).
+
+#[path = "../../../tests/needs/mod.rs"]
+mod needs;
+
+use std::fs::File;
+use std::io::BufReader;
+
+use super::{assert_sound, count, extent, volumes};
+use crate::format::citygml::{is_citygml, read_citygml};
+use crate::format::surfaces::{SurfaceFile, SurfaceKind};
+
+const GROUND: Option<SurfaceKind> = Some(SurfaceKind::Ground);
+const ROOF: Option<SurfaceKind> = Some(SurfaceKind::Roof);
+const WALL: Option<SurfaceKind> = Some(SurfaceKind::Wall);
+
+fn citygml(name: &str) -> Option<SurfaceFile> {
+    let path = needs::shared(&format!("data/formats/city/{name}"))?;
+    assert!(is_citygml(&std::fs::read(&path).unwrap()));
+    let file = read_citygml(BufReader::new(File::open(path).unwrap())).unwrap();
+    assert_sound(&file);
+    assert_eq!(file.skipped, []);
+    Some(file)
+}
+
+/// Objects that are no part of another, and parts.
+fn objects(file: &SurfaceFile) -> (usize, usize) {
+    let parts = file.objects.iter().filter(|object| object.parent.is_some()).count();
+    (file.objects.len() - parts, parts)
+}
+
+fn holes(file: &SurfaceFile) -> usize {
+    file.surfaces.iter().filter(|surface| surface.ring_count > 1).count()
+}
+
+fn assert_extent(file: &SurfaceFile, low: [f64; 3], high: [f64; 3]) {
+    let (found_low, found_high) = extent(file);
+    for axis in 0..3 {
+        assert!((found_low[axis] - low[axis]).abs() < 1e-6, "{found_low:?}");
+        assert!((found_high[axis] - high[axis]).abs() < 1e-6, "{found_high:?}");
+    }
+}
+
+#[test]
+fn zurich_citygml_1_has_six_parts_and_a_named_reference_system() {
+    let Some(file) = citygml("zurich-lod2-citygml1.xml") else { return };
+    assert_eq!((file.format.as_str(), file.crs.as_deref()), ("CityGML 1.0", Some("CH1903")));
+    assert_eq!(objects(&file), (4, 6));
+    let lod = Some((2, 0));
+    assert_eq!([GROUND, ROOF, WALL].map(|kind| count(&file, lod, kind)), [4, 12, 45]);
+    assert_eq!(file.surfaces.len(), 61);
+}
+
+#[test]
+fn delft_citygml_2_has_solids_of_lists_of_pos_that_look_outwards() {
+    let Some(file) = citygml("delft-citygml2.xml") else { return };
+    assert_eq!((file.format.as_str(), file.crs.as_deref()), ("CityGML 2.0", Some("urn:ogc:def:crs:EPSG::7415")));
+    assert_eq!(objects(&file), (3, 0));
+    assert_eq!([0, 1].map(|lod| count(&file, Some((lod, 0)), None)), [6, 91]);
+    assert_extent(&file, [84508.173, 446648.404, 0.26], [84664.096, 447382.68, 10.56]);
+    assert_eq!(volumes(&file).iter().map(|volume| *volume > 0.0).collect::<Vec<_>>(), [true; 3]);
+}
+
+#[test]
+fn plateau_keeps_its_axes_in_the_file_s_order() {
+    let Some(file) = citygml("64413325_bldg_6697_op.gml") else { return };
+    assert_eq!(file.crs.as_deref(), Some("http://www.opengis.net/def/crs/EPSG/0/6697"));
+    assert_eq!(objects(&file), (25, 0));
+    assert_eq!([0, 1].map(|lod| count(&file, Some((lod, 0)), None)), [25, 156]);
+    assert!((file.positions[0][0] - 42.94147409013628).abs() < 1e-12);
+    // Latitude first: all solids are mirrored.
+    assert_eq!(volumes(&file).len(), 25);
+    assert!(volumes(&file).iter().all(|volume| *volume < 0.0));
+}
+
+#[test]
+fn fzk_haus_citygml_3_has_a_solid_that_names_its_walls() {
+    let Some(file) = citygml("FZK-Haus-LoD2__v3.gml") else { return };
+    assert_eq!(file.format, "CityGML 3.0");
+    assert_eq!(objects(&file), (1, 0));
+    assert_eq!([GROUND, ROOF, WALL].map(|kind| count(&file, Some((2, 0)), kind)), [1, 2, 4]);
+    assert!(file.surfaces.iter().all(|surface| surface.shell == Some(0)));
+    assert!(volumes(&file)[0] > 0.0);
+}
+
+#[test]
+fn tum_main_entrance_has_holes_and_its_extent() {
+    let Some(file) = citygml("TUM-Main-Entrance.gml") else { return };
+    assert_eq!([GROUND, ROOF, WALL].map(|kind| count(&file, Some((2, 0)), kind)), [1, 2, 14]);
+    assert_eq!((file.surfaces.len(), holes(&file)), (17, 2));
+    assert!(file.surfaces.iter().all(|surface| surface.shell == Some(0)));
+    assert_extent(&file, [691009.16, 5335994.57, 515.042], [691054.07, 5336047.41, 534.45]);
+    assert_eq!(file.crs.as_deref(), Some("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"));
+}

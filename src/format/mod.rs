@@ -19,6 +19,8 @@ pub mod surfaces;
 #[cfg(test)]
 mod tests;
 mod text;
+pub mod tileset;
+mod uri;
 
 pub use alignment::{StoredAlignment, read_alignment};
 pub use escape::escaped;

@@ -7,6 +7,7 @@ use super::assert_sound;
 use crate::format::citygml::read_citygml;
 use crate::format::surface_error::SurfaceError;
 use crate::format::surfaces::SurfaceFile;
+use crate::format::tileset::{read_tile, read_tileset};
 
 /// Cuts the file before every byte, and changes every byte in three ways. Returns how many of these were refused.
 pub fn mutate(bytes: &[u8], read: impl Fn(&[u8]) -> Result<SurfaceFile, SurfaceError>) -> usize {
@@ -46,4 +47,27 @@ fn citygml_cut_or_changed_at_any_byte_is_read_or_refused() {
     assert_eq!((file.surfaces.len(), file.objects.len()), (2, 2));
     let refused = mutate(CITYGML.as_bytes(), read);
     assert!(refused > CITYGML.len(), "cut files alone are as many, {refused}");
+}
+
+#[test]
+fn tiles_cut_or_changed_at_any_byte_are_read_or_refused() {
+    let bytes = include_bytes!("../../../tests/data/formats/house.b3dm");
+    let read = |bytes: &[u8]| read_tile(bytes, std::path::Path::new("house.b3dm")).map(|file| file.surfaces);
+    assert_eq!(read(bytes).unwrap().surfaces.len(), 12);
+    assert!(mutate(bytes, read) > bytes.len());
+}
+
+#[test]
+fn tilesets_cut_or_changed_at_any_byte_are_read_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("0.b3dm"), include_bytes!("../../../tests/data/formats/house.b3dm")).unwrap();
+    let json = br#"{"asset": {"version": "1.0"}, "geometricError": 9, "root": {"refine": "ADD", "children": [{},
+        {"transform": [1,0,0,0,0,1,0,0,0,0,1,0,5,5,5,1], "content": {"uri": "0.b3dm"}}]}}"#;
+    let path = folder.path().join("tileset.json");
+    let read = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        read_tileset(&path).map(|file| file.surfaces)
+    };
+    assert_eq!(read(json).unwrap().surfaces.len(), 12);
+    assert!(mutate(json, read) > json.len());
 }

@@ -9,6 +9,7 @@ use std::io::BufReader;
 use super::{assert_sound, count, extent, volumes};
 use crate::format::citygml::{is_citygml, read_citygml};
 use crate::format::surfaces::{SurfaceFile, SurfaceKind};
+use crate::format::tileset::{TilesetFile, is_tileset, read_tile, read_tileset};
 
 const GROUND: Option<SurfaceKind> = Some(SurfaceKind::Ground);
 const ROOF: Option<SurfaceKind> = Some(SurfaceKind::Roof);
@@ -91,4 +92,45 @@ fn tum_main_entrance_has_holes_and_its_extent() {
     assert!(file.surfaces.iter().all(|surface| surface.shell == Some(0)));
     assert_extent(&file, [691009.16, 5335994.57, 515.042], [691054.07, 5336047.41, 534.45]);
     assert_eq!(file.crs.as_deref(), Some("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"));
+}
+
+fn tileset(name: &str) -> Option<TilesetFile> {
+    let path = needs::shared(&format!("data/formats/tiles/{name}/tileset.json"))?;
+    assert!(is_tileset(&std::fs::read(&path).unwrap()));
+    let file = read_tileset(&path).unwrap();
+    assert_sound(&file.surfaces);
+    assert_eq!((file.surfaces.skipped.len(), file.surfaces.surfaces.len()), (0, 246));
+    Some(file)
+}
+
+#[test]
+fn both_tilesets_stand_in_the_same_place_upright() {
+    let (Some(old), Some(new)) = (tileset("v10"), tileset("v11")) else { return };
+    assert_eq!((old.surfaces.format.as_str(), new.surfaces.format.as_str()), ("3D Tiles 1.0", "3D Tiles 1.1"));
+    let names: Vec<&str> = old.surfaces.objects.iter().map(|object| object.id.as_str()).collect();
+    assert_eq!(names, ["NL.IMBAG.Pand.0503100000031927-0", "NL.IMBAG.Pand.0503100000028341-0"]);
+    let in_ecef = |file: &TilesetFile| {
+        let local = file.local_from_ecef.unwrap();
+        let back = move |position: &[f64; 3]| {
+            local.rotation.inverse() * (nalgebra::Vector3::from(*position) - local.translation)
+        };
+        file.surfaces.positions.iter().map(back).collect::<Vec<_>>()
+    };
+    let apart = in_ecef(&old).iter().zip(in_ecef(&new)).map(|(old, new)| (old - new).norm()).fold(0.0, f64::max);
+    assert!(apart < 1e-5, "{apart}");
+    // The houses are 13.4 m high above NAP - 0.3 m, which is 43.1 m above the ellipsoid.
+    let (low, high) = extent(&new.surfaces);
+    assert!((low[2] - 43.124).abs() < 0.01 && (high[2] - 56.508).abs() < 0.01, "{low:?} {high:?}");
+}
+
+#[test]
+fn a_tile_by_itself_is_read_and_one_that_looks_like_text_is_named() {
+    let (Some(good), Some(bad)) =
+        (needs::shared("cases/tile-b3dm/house.b3dm"), needs::shared("cases/tile-b3dm/looks_like_obj.b3dm"))
+    else {
+        return;
+    };
+    assert_eq!(read_tile(&std::fs::read(&good).unwrap(), &good).unwrap().surfaces.surfaces.len(), 12);
+    let error = read_tile(&std::fs::read(&bad).unwrap(), &bad).unwrap_err();
+    assert!(!error.to_string().is_empty());
 }

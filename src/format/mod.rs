@@ -5,6 +5,7 @@ pub mod citygml;
 pub mod colmap;
 pub mod file;
 mod escape;
+pub mod footprints;
 pub mod gltf;
 mod kind;
 pub mod obj;

@@ -5,6 +5,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::assert_sound;
 use crate::format::citygml::read_citygml;
+use crate::format::footprints::{FootprintFields, read_geopackage, read_shapefile, tests};
 use crate::format::surface_error::SurfaceError;
 use crate::format::surfaces::SurfaceFile;
 use crate::format::tileset::{read_tile, read_tileset};
@@ -70,4 +71,47 @@ fn tilesets_cut_or_changed_at_any_byte_are_read_or_refused() {
     };
     assert_eq!(read(json).unwrap().surfaces.len(), 12);
     assert!(mutate(json, read) > json.len());
+}
+
+const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [0.0, 10.0], [10.0, 10.0], [10.0, 0.0]];
+
+#[test]
+fn shapefiles_and_tables_cut_or_changed_at_any_byte_are_read_or_refused() {
+    let shp = tests::shp(5, &[vec![SQUARE.to_vec()], vec![SQUARE.to_vec()]]);
+    let dbf = tests::dbf(&[("h", b'N', 3), ("i", b'I', 4)], &[" 2.5\0\0\0\0", " 3.5\0\0\0\0"]);
+    let folder = tempfile::tempdir().unwrap();
+    let [shapes, table] = ["a.shp", "a.dbf"].map(|name| folder.path().join(name));
+    let fields = FootprintFields { height: Some("h".to_owned()), base: Some("i".to_owned()) };
+    let read = |path: &std::path::Path, bytes: &[u8]| {
+        std::fs::write(path, bytes).unwrap();
+        read_shapefile(&shapes, &fields)
+    };
+    std::fs::write(&table, &dbf).unwrap();
+    assert_eq!(read(&shapes, &shp).unwrap().surfaces.len(), 12);
+    assert!(mutate(&shp, |bytes| read(&shapes, bytes)) > shp.len() / 2);
+    std::fs::write(&shapes, &shp).unwrap();
+    assert!(mutate(&dbf, |bytes| read(&table, bytes)) > dbf.len() / 2);
+}
+
+#[test]
+fn geopackages_changed_anywhere_are_read_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gpkg");
+    drop(tests::geopackage(&path));
+    let bytes = std::fs::read(&path).unwrap();
+    let fields = FootprintFields { height: Some("height".to_owned()), base: None };
+    // Each opens a database: bytes at steps, and those of the header all.
+    let mut refused = 0;
+    for at in (0..100).chain((100..bytes.len()).step_by(7)) {
+        for value in [bytes[at] ^ 0x10, 0, 0xFF] {
+            let mut changed = bytes.clone();
+            changed[at] = value;
+            std::fs::write(&path, &changed[..if value == 0 { at } else { bytes.len() }]).unwrap();
+            match read_geopackage(&path, &fields) {
+                Ok(file) => assert_sound(&file),
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(refused > bytes.len() / 7, "{refused} of {}", bytes.len());
 }

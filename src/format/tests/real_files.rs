@@ -8,6 +8,7 @@ use std::io::BufReader;
 
 use super::{assert_sound, count, extent, volumes};
 use crate::format::citygml::{is_citygml, read_citygml};
+use crate::format::footprints::{FootprintFields, is_geopackage, is_shapefile, read_geopackage, read_shapefile};
 use crate::format::surfaces::{SurfaceFile, SurfaceKind};
 use crate::format::tileset::{TilesetFile, is_tileset, read_tile, read_tileset};
 
@@ -133,4 +134,43 @@ fn a_tile_by_itself_is_read_and_one_that_looks_like_text_is_named() {
     assert_eq!(read_tile(&std::fs::read(&good).unwrap(), &good).unwrap().surfaces.surfaces.len(), 12);
     let error = read_tile(&std::fs::read(&bad).unwrap(), &bad).unwrap_err();
     assert!(!error.to_string().is_empty());
+}
+
+#[test]
+fn test_buildings_are_three_prisms_with_six_rings() {
+    let Some(path) = needs::shared("data/formats/footprints/test_buildings.shp") else { return };
+    assert!(is_shapefile(&std::fs::read(&path).unwrap()));
+    let fields = FootprintFields { height: Some("height".to_owned()), base: None };
+    let file = read_shapefile(&path, &fields).unwrap();
+    assert_sound(&file);
+    // The first is of three parts.
+    assert_eq!((file.objects.len(), count(&file, Some((1, 0)), ROOF)), (3, 5));
+    let roofs = file.surfaces.iter().filter(|surface| surface.kind == ROOF);
+    assert_eq!(roofs.map(|surface| surface.ring_count).sum::<u32>(), 6);
+    assert!(volumes(&file).iter().all(|volume| *volume > 0.0));
+    assert!(file.crs.as_deref().is_some_and(|crs| crs.starts_with("PROJCS[")));
+    assert_eq!(extent(&file).0[2], 0.0);
+}
+
+#[test]
+fn footprints_without_heights_list_their_numbers_in_both_formats() {
+    let (Some(shp), Some(gpkg)) =
+        (needs::shared("data/formats/footprints/by_14.shp"), needs::shared("data/formats/footprints/by_14.gpkg"))
+    else {
+        return;
+    };
+    assert!(is_geopackage(&std::fs::read(&gpkg).unwrap()));
+    let none = FootprintFields::default();
+    let errors = [read_shapefile(&shp, &none).unwrap_err(), read_geopackage(&gpkg, &none).unwrap_err()];
+    let listed = errors.map(|error| error.to_string());
+    // Any number will do to count them.
+    let field = listed[0].rsplit("numbers are ").next().unwrap().split(", ").next().unwrap().to_owned();
+    assert!(listed[1].to_lowercase().contains(&field.to_lowercase()), "{listed:?}");
+    let fields = FootprintFields { height: Some(field), base: None };
+    for file in [read_shapefile(&shp, &fields).unwrap(), read_geopackage(&gpkg, &fields).unwrap()] {
+        assert_sound(&file);
+        let roofs = file.surfaces.iter().filter(|surface| surface.kind == ROOF);
+        let skipped: usize = file.skipped.iter().map(|skipped| skipped.count).sum();
+        assert_eq!((file.objects.len() + skipped, roofs.map(|surface| surface.ring_count).sum::<u32>()), (169, 175));
+    }
 }

@@ -8,6 +8,7 @@ mod escape;
 pub mod footprints;
 pub mod gltf;
 mod kind;
+pub mod meshes;
 pub mod obj;
 mod placement;
 mod problem;

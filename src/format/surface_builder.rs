@@ -38,8 +38,12 @@ impl SurfaceBuilder {
         Ok(())
     }
 
-    /// Adds a triangle between positions that are there already.
-    pub fn add_triangle(&mut self, corners: [u32; 3], traits: SurfaceTraits) -> Result<(), SurfaceError> {
+    /// Adds a polygon without holes between positions that are there already.
+    pub fn add_polygon(
+        &mut self,
+        corners: impl IntoIterator<Item = u32>,
+        traits: SurfaceTraits,
+    ) -> Result<(), SurfaceError> {
         let first_ring = self.file.ring_ends.len() as u32;
         self.file.corners.extend(corners);
         self.end_ring()?;

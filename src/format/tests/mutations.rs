@@ -6,6 +6,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::assert_sound;
 use crate::format::citygml::read_citygml;
 use crate::format::footprints::{FootprintFields, read_geopackage, read_shapefile, tests};
+use crate::format::meshes::{self, read_ply_mesh, read_stl};
 use crate::format::surface_error::SurfaceError;
 use crate::format::surfaces::SurfaceFile;
 use crate::format::tileset::{read_tile, read_tileset};
@@ -114,4 +115,17 @@ fn geopackages_changed_anywhere_are_read_or_refused() {
         }
     }
     assert!(refused > bytes.len() / 7, "{refused} of {}", bytes.len());
+}
+
+#[test]
+fn meshes_cut_or_changed_at_any_byte_are_read_or_refused() {
+    let stl = |bytes: &[u8]| read_stl(bytes, "file");
+    for bytes in [meshes::tests::binary_stl("solid", 2), meshes::tests::TEXT_STL.as_bytes().to_vec()] {
+        assert!(mutate(&bytes, stl) > bytes.len() / 2);
+    }
+    let ply = |bytes: &[u8]| read_ply_mesh(bytes, "file");
+    let text = meshes::tests::TEXT_PLY.as_bytes().to_vec();
+    for bytes in [text, meshes::tests::binary_ply(false), meshes::tests::binary_ply(true)] {
+        assert!(mutate(&bytes, ply) > bytes.len() / 2);
+    }
 }

@@ -78,7 +78,7 @@ fn add_part(
         };
         let corners = if is_mirrored { [a, c, b] } else { [a, b, c] };
         let traits = SurfaceTraits { object, ..SurfaceTraits::default() };
-        builder.add_triangle(corners.map(|corner| first + corner), traits)?;
+        builder.add_polygon(corners.map(|corner| first + corner), traits)?;
     }
     Ok(())
 }

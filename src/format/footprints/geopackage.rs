@@ -26,13 +26,14 @@ pub fn is_geopackage(start: &[u8]) -> bool {
 /// Reads all layers of polygons that have the field of heights.
 pub fn read_geopackage(path: &Path, fields: &FootprintFields) -> Result<SurfaceFile, SurfaceError> {
     let whole = |error: std::io::Error| SurfaceError::whole(format!("cannot read the GeoPackage: {error}"));
-    open_regular(path).map_err(whole)?;
+    let length = open_regular(path).and_then(|file| file.metadata()).map_err(whole)?.len();
     refuse_pending(path)?;
     let database = open(path).map_err(broken)?;
     let layers = layers(&database).map_err(broken)?;
     if layers.is_empty() {
         return Err(SurfaceError::whole("the GeoPackage has no layer of features; expected footprints as polygons"));
     }
+    let mut rows_left = length;
     let mut prisms = Prisms::default();
     let mut numeric = Vec::new();
     let mut crs: Option<Option<String>> = None;
@@ -48,7 +49,7 @@ pub fn read_geopackage(path: &Path, fields: &FootprintFields) -> Result<SurfaceF
             prisms.builder.skip("layers in another reference system than the first", 1, || layer.table.clone());
             continue;
         }
-        read_layer(&database, layer, &columns, fields, &mut prisms)?;
+        read_layer(&database, layer, &query(layer, &columns, fields)?, &mut rows_left, &mut prisms)?;
     }
     let Some(crs) = crs else {
         // None has it: all their fields are listed.
@@ -137,20 +138,28 @@ fn reference_system(database: &Connection, layer: &Layer) -> rusqlite::Result<Op
     Ok(Some(if is_named { format!("{}:{code}", organization.to_uppercase()) } else { definition }))
 }
 
-fn read_layer(
-    database: &Connection,
-    layer: &Layer,
-    numeric: &[String],
-    fields: &FootprintFields,
-    prisms: &mut Prisms,
-) -> Result<(), SurfaceError> {
+/// Number, geometry, height and base of each row.
+fn query(layer: &Layer, numeric: &[String], fields: &FootprintFields) -> Result<String, SurfaceError> {
     let columns = fields.among(numeric)?;
     let base = columns.base.map_or("0.0".to_owned(), |base| quoted(&numeric[base]));
     let (geometry, height) = (quoted(&layer.geometry), quoted(&numeric[columns.height]));
-    let query = format!("SELECT rowid, {geometry}, {height}, {base} FROM {}", quoted(&layer.table));
-    let mut statement = database.prepare(&query).map_err(broken)?;
+    Ok(format!("SELECT rowid, {geometry}, {height}, {base} FROM {}", quoted(&layer.table)))
+}
+
+/// A row takes more than a byte: where there are more than the file has, its pages lead in a circle.
+fn read_layer(
+    database: &Connection,
+    layer: &Layer,
+    query: &str,
+    rows_left: &mut u64,
+    prisms: &mut Prisms,
+) -> Result<(), SurfaceError> {
+    let mut statement = database.prepare(query).map_err(broken)?;
     let mut rows = statement.query([]).map_err(broken)?;
     while let Some(row) = rows.next().map_err(broken)? {
+        *rows_left = rows_left
+            .checked_sub(1)
+            .ok_or_else(|| SurfaceError::whole("the GeoPackage has more rows than bytes; get it again"))?;
         let record: i64 = row.get(0).map_err(broken)?;
         let id = format!("{} {record}", layer.table);
         let place = Place::Record(record.unsigned_abs());

@@ -9,6 +9,7 @@ use std::io::BufReader;
 use super::{assert_sound, count, extent, volumes};
 use crate::format::citygml::{is_citygml, read_citygml};
 use crate::format::footprints::{FootprintFields, is_geopackage, is_shapefile, read_geopackage, read_shapefile};
+use crate::format::gltf::{GltfError, GltfFile, read_gltf};
 use crate::format::surfaces::{SurfaceFile, SurfaceKind};
 use crate::format::tileset::{TilesetFile, is_tileset, read_tile, read_tileset};
 
@@ -173,4 +174,24 @@ fn footprints_without_heights_list_their_numbers_in_both_formats() {
         let skipped: usize = file.skipped.iter().map(|skipped| skipped.count).sum();
         assert_eq!((file.objects.len() + skipped, roofs.map(|surface| surface.ring_count).sum::<u32>()), (169, 175));
     }
+}
+
+fn gltf(case: &str, name: &str) -> Option<Result<GltfFile, GltfError>> {
+    let path = needs::shared(&format!("cases/{case}/{name}"))?;
+    Some(read_gltf(&std::fs::read(&path).unwrap(), path.parent().unwrap()))
+}
+
+#[test]
+fn gltf_with_extensions_stands_where_it_is_and_packed_ones_are_named() {
+    let Some(quantized) = gltf("gltf-quantized", "house.gltf") else { return };
+    let part = quantized.unwrap().parts.remove(0);
+    let highest = part.positions.iter().fold([0.0; 3], |high, at| [0, 1, 2].map(|axis| f64::max(at[axis], high[axis])));
+    assert_eq!(part.triangles.len(), 12);
+    assert!([10.0, 6.0, 20.0].iter().zip(highest).all(|(size, high)| (size - high).abs() < 0.001), "{highest:?}");
+    let Some(centered) = gltf("gltf-cesium-rtc", "house.gltf") else { return };
+    assert_eq!(centered.unwrap().parts[0].positions[0], [592000.0, 12.0, -5750000.0]);
+    let Some(packed) = gltf("gltf-meshopt-fallback", "house.gltf") else { return };
+    assert!(packed.unwrap_err().to_string().contains("EXT_meshopt_compression"));
+    let Some(zeros) = gltf("rel-gltf-sparse-zeros", "city.gltf") else { return };
+    assert!(zeros.unwrap_err().to_string().contains("too many for"));
 }

@@ -200,8 +200,8 @@ impl Scene {
 
     pub fn end(&mut self) -> Result<(), SurfaceError> {
         let Some(open) = self.open.pop() else { return Ok(()) };
-        let object = self.builder.object_id(open.context.object);
-        self.end_element(&open).map_err(|error| error.of(object))?;
+        let ended = self.end_element(&open);
+        ended.map_err(|error| error.of(self.builder.object_id(open.context.object)))?;
         if let Some(id) = open.id {
             let surfaces = open.surfaces_before..self.surfaces_for(open.context.purpose).surface_count();
             if open.context.purpose == Purpose::Scene {
@@ -282,8 +282,10 @@ impl Scene {
             _ => &mut self.builder,
         };
         builder.add_surface(rings.iter().map(|ring| &**ring), SurfaceTraits { object, lod, kind, shell })?;
-        let example = self.builder.object_id(Some(object)).unwrap_or_default();
-        self.builder.skip("holes with less than three corners", short_holes, || example);
+        if short_holes > 0 {
+            let example = self.builder.object_id(Some(object)).unwrap_or_default();
+            self.builder.skip("holes with less than three corners", short_holes, || example);
+        }
         Ok(())
     }
 

@@ -25,3 +25,22 @@ pub(super) fn shortened(uri: &str) -> String {
     const SHOWN: usize = 60;
     if uri.chars().count() <= SHOWN { uri.to_owned() } else { uri.chars().take(SHOWN).chain("...".chars()).collect() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hundredths_are_turned_back_and_odd_ones_left() {
+        assert_eq!(percent_decoded("a%20b%2Fc%2").as_deref(), Some("a b/c%2"));
+        assert_eq!(percent_decoded("100%zz").as_deref(), Some("100%zz"));
+        assert_eq!(percent_decoded("%C3%BC").as_deref(), Some("\u{fc}"));
+        assert_eq!(percent_decoded("%ff"), None);
+    }
+
+    #[test]
+    fn long_names_are_shortened_between_letters() {
+        assert_eq!(shortened("short"), "short");
+        assert_eq!(shortened(&"\u{fc}".repeat(100)).chars().count(), 63);
+    }
+}

@@ -184,3 +184,69 @@ fn is_object(local_name: &str) -> bool {
     local_name.starts_with(|c: char| c.is_ascii_uppercase())
         && (OBJECTS.contains(&local_name) || PARTS.iter().any(|ending| local_name.ends_with(ending)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn features_of_all_three_versions_are_objects() {
+        for name in [
+            "Building",
+            "BuildingPart",
+            "BuildingInstallation",
+            "IntBuildingInstallation",
+            "BuildingConstructiveElement",
+            "BuildingRoom",
+            "Room",
+            "BridgePart",
+            "TunnelInstallation",
+            "OtherConstruction",
+            "SolitaryVegetationObject",
+            "WaterBody",
+            "Road",
+            "TrafficSpace",
+            "GenericCityObject",
+            "TINRelief",
+            "CityFurniture",
+        ] {
+            assert_eq!(Element::of(name), Element::Object, "{name}");
+        }
+        for name in ["Address", "CityModel", "Appearance", "ExternalReference", "outerBuildingInstallation", "building"]
+        {
+            assert_eq!(Element::of(name), Element::Other, "{name}");
+        }
+    }
+
+    #[test]
+    fn surfaces_of_geometry_are_no_boundaries() {
+        for name in ["MultiSurface", "CompositeSurface", "Surface", "PolyhedralSurface", "TriangulatedSurface"] {
+            assert_eq!(Element::of(name), Element::Surfaces, "{name}");
+        }
+        assert_eq!(Element::of("OrientableSurface"), Element::Orientable);
+        for name in
+            ["FloorSurface", "CeilingSurface", "WaterSurface", "InteriorWallSurface", "DoorSurface", "TrafficArea"]
+        {
+            assert_eq!(Element::of(name), Element::Boundary(SurfaceKind::Other), "{name}");
+        }
+        assert_eq!(Element::of("baseSurface"), Element::Other, "a property");
+    }
+
+    #[test]
+    fn levels_are_read_from_the_names_of_properties() {
+        for (name, level) in [("lod0FootPrint", 0), ("lod1Solid", 1), ("lod2MultiSurface", 2), ("lod4Geometry", 4)] {
+            assert_eq!(Element::of(name), Element::Lod(Lod(level, 0)), "{name}");
+        }
+        assert_eq!(Element::of("lod"), Element::LodText);
+        for name in ["lodging", "LOD2", "slod2"] {
+            assert_eq!(Element::of(name), Element::Other, "{name}");
+        }
+    }
+
+    #[test]
+    fn parts_are_held_by_properties_in_small_letters() {
+        for name in ["consistsOfBuildingPart", "buildingPart", "consistsOfBridgePart", "tunnelPart"] {
+            assert_eq!(Element::of(name), Element::PartProperty, "{name}");
+        }
+    }
+}

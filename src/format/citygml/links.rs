@@ -166,3 +166,74 @@ fn lost(href: &str) -> &'static str {
         "references to surfaces in other files"
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::surface_builder::SurfaceTraits;
+
+    fn scene(surfaces: u32) -> SurfaceBuilder {
+        let mut builder = SurfaceBuilder::default();
+        builder.add_object("house".to_owned(), "Building", None);
+        for _ in 0..surfaces {
+            builder.add_surface([&[[0.0; 3], [1.0; 3], [2.0; 3]][..]], SurfaceTraits::default()).unwrap();
+        }
+        builder
+    }
+
+    fn link(href: &str, shell: Option<u32>, is_reversed: bool) -> Link {
+        Link { href: href.into(), object: Some(0), kind: Some(SurfaceKind::Roof), shell, is_reversed }
+    }
+
+    #[test]
+    fn a_turn_within_a_turn_is_none() {
+        for (outer, inner, first_corner) in [(false, false, 0), (true, false, 2), (false, true, 2), (true, true, 0)] {
+            let mut builder = scene(1);
+            let mut links = Links::default();
+            links.add_target("surface".into(), 0..1, 0..0);
+            links.add(link("#surface", None, inner));
+            links.add_target("oriented".into(), 1..1, 0..1);
+            links.add(link("#oriented", Some(4), outer));
+            links.resolve(&mut builder).unwrap();
+            assert_eq!((builder.file.surfaces[0].shell, builder.file.corners[0]), (Some(4), first_corner));
+        }
+    }
+
+    #[test]
+    fn a_kind_that_is_known_is_kept() {
+        let mut builder = scene(2);
+        builder.file.surfaces[0].kind = Some(SurfaceKind::Wall);
+        let mut links = Links::default();
+        links.add_target("both".into(), 0..2, 0..0);
+        links.add(link("#both", None, false));
+        links.resolve(&mut builder).unwrap();
+        let kinds: Vec<_> = builder.file.surfaces.iter().map(|surface| surface.kind).collect();
+        assert_eq!(kinds, [Some(SurfaceKind::Wall), Some(SurfaceKind::Roof)]);
+    }
+
+    #[test]
+    fn of_two_geometries_with_one_name_the_first_is_meant() {
+        let mut builder = scene(2);
+        let mut links = Links::default();
+        links.add_target("twice".into(), 1..2, 0..0);
+        links.add_target("twice".into(), 0..1, 0..0);
+        links.add(link("#twice", Some(0), false));
+        links.resolve(&mut builder).unwrap();
+        assert_eq!(builder.file.surfaces.iter().map(|surface| surface.shell).collect::<Vec<_>>(), [None, Some(0)]);
+    }
+
+    #[test]
+    fn a_pyramid_of_references_is_refused_before_it_takes_time() {
+        let mut builder = scene(1);
+        let mut links = Links::default();
+        links.add_target("0".into(), 0..1, 0..0);
+        for level in 1..60 {
+            let before = links.count();
+            let href = format!("#{}", level - 1);
+            (0..2).for_each(|_| links.add(link(&href, None, false)));
+            links.add_target(level.to_string().into(), 1..1, before..links.count());
+        }
+        links.add(link("#59", Some(0), false));
+        assert!(links.resolve(&mut builder).unwrap_err().to_string().contains("too often"));
+    }
+}

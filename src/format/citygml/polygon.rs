@@ -105,3 +105,58 @@ impl Polygon {
         self.short_holes
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(polygon: &mut Polygon, corners: &[[f64; 3]], is_hole: bool) {
+        polygon.begin_ring().unwrap();
+        polygon.add(corners.iter().copied());
+        polygon.end_ring(is_hole);
+    }
+
+    const A: [f64; 3] = [0.0; 3];
+    const B: [f64; 3] = [1.0, 0.0, 0.0];
+    const C: [f64; 3] = [0.0, 1.0, 0.0];
+
+    #[test]
+    fn corners_that_repeat_the_one_before_and_the_closing_one_are_none() {
+        let mut polygon = Polygon::default();
+        polygon.begin().unwrap();
+        ring(&mut polygon, &[A, A, B, B, B, C, C, A], false);
+        assert_eq!(polygon.end().unwrap(), [[A, B, C]]);
+    }
+
+    #[test]
+    fn nothing_is_left_of_the_polygon_before() {
+        let mut polygon = Polygon::default();
+        polygon.begin().unwrap();
+        ring(&mut polygon, &[A, B], false);
+        polygon.pass_over("a reason that comes second");
+        assert_eq!(polygon.end(), Err("polygons with less than three corners"));
+        polygon.begin().unwrap();
+        ring(&mut polygon, &[C, B, A], false);
+        ring(&mut polygon, &[A, B], true);
+        assert_eq!(polygon.short_holes(), 1);
+        assert_eq!(polygon.end().unwrap(), [[C, B, A]]);
+    }
+
+    #[test]
+    fn two_outlines_are_no_polygon() {
+        let mut polygon = Polygon::default();
+        polygon.begin().unwrap();
+        ring(&mut polygon, &[A, B, C], false);
+        ring(&mut polygon, &[A, B, C], false);
+        assert_eq!(polygon.end(), Err("polygons with two outlines"));
+    }
+
+    #[test]
+    fn rings_and_polygons_do_not_nest() {
+        let mut polygon = Polygon::default();
+        polygon.begin().unwrap();
+        assert!(polygon.begin().is_err());
+        polygon.begin_ring().unwrap();
+        assert!(polygon.begin_ring().is_err() && polygon.is_ring_open());
+    }
+}

@@ -28,3 +28,22 @@ impl ReferenceSystem {
         self.of_envelope.as_deref().or(self.of_surface.as_deref()).or(self.of_anything.as_deref())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_envelope_comes_before_surfaces_and_these_before_all_else() {
+        let mut system = ReferenceSystem::default();
+        assert_eq!(system.name(), None);
+        assert!(!system.note(Element::Line, "of a point"));
+        assert_eq!(system.name(), Some("of a point"));
+        assert!(!system.note(Element::Polygon, "of a polygon"));
+        assert_eq!(system.name(), Some("of a polygon"));
+        assert!(!system.note(Element::Envelope, "of an envelope"));
+        assert_eq!(system.name(), Some("of an envelope"));
+        assert!(system.note(Element::Solid, "another"), "of a surface, and not the file's");
+        assert!(!system.note(Element::Envelope, "another"), "an envelope holds no surface");
+    }
+}

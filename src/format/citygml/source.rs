@@ -91,3 +91,53 @@ impl<R: BufRead> BufRead for LineCounter<R> {
         self.inner.consume(count);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::BufReader;
+
+    fn decoded(bytes: &[u8]) -> std::result::Result<String, SurfaceError> {
+        let mut text = String::new();
+        match text_of(bytes)? {
+            Text::Utf8(mut source) => source.read_to_string(&mut text),
+            Text::Other(mut source) => source.read_to_string(&mut text),
+        }
+        .map_err(|error| SurfaceError::whole(error.to_string()))?;
+        Ok(text)
+    }
+
+    #[test]
+    fn the_declaration_names_the_encoding() {
+        for (declaration, byte, expected) in [
+            ("<?xml version='1.0' encoding='ISO-8859-1'?>", 0xE9_u8, "\u{e9}"),
+            ("<?xml version=\"1.0\" encoding = \"windows-1252\" ?>", 0x80, "\u{20ac}"),
+            ("<?xml version='1.0' encoding='ISO-8859-15'?>", 0xA4, "\u{20ac}"),
+        ] {
+            let text = decoded(&[declaration.as_bytes(), &[byte]].concat()).unwrap();
+            assert!(text.ends_with(expected), "{text}");
+        }
+        assert_eq!(decoded("\u{feff}<a>\u{fc}".as_bytes()).unwrap(), "\u{feff}<a>\u{fc}");
+        assert_eq!(decoded(b"<a encoding='EBCDIC'>").unwrap(), "<a encoding='EBCDIC'>");
+        assert!(decoded(b"<?xml encoding='nonsense'?>").unwrap_err().to_string().contains("`nonsense`"));
+    }
+
+    #[test]
+    fn a_declaration_beyond_the_first_bytes_is_none() {
+        let padded = format!("{}<?xml encoding='ISO-8859-1'?>", " ".repeat(2000));
+        assert_eq!(decoded(padded.as_bytes()).unwrap().len(), padded.len());
+    }
+
+    #[test]
+    fn lines_are_counted_as_they_are_taken() {
+        for capacity in [1, 2, 3, 100] {
+            let mut counter = LineCounter::new(BufReader::with_capacity(capacity, &b"a\nb\n\nc"[..]));
+            let mut first = Vec::new();
+            counter.read_until(b'b', &mut first).unwrap();
+            assert_eq!((first.len(), counter.line), (3, 2));
+            let mut rest = Vec::new();
+            counter.read_to_end(&mut rest).unwrap();
+            assert_eq!((rest.len(), counter.line), (3, 4));
+        }
+    }
+}

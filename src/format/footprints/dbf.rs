@@ -96,3 +96,35 @@ impl Table<'_> {
         self.records.get(start..start + field.length)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::dbf;
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_in_every_type_that_holds_them() {
+        let fields = [("text", b'N', 6), ("float", b'F', 6), ("long", b'I', 4), ("name", b'C', 3), ("memo", b'B', 3)];
+        let rows = [
+            [" ", "  -1.5", "   2e3", "\u{1}\0\0\0", "abc", "xyz"].concat(),
+            ["*", "******", "  nan ", "\0\0\0\0", "   ", "xyz"].concat(),
+        ];
+        let bytes = dbf(&fields, &rows.each_ref().map(String::as_str));
+        let table = Table::of(&bytes).unwrap();
+        assert_eq!((table.count(), table.numeric()), (2, ["text", "float", "long"].map(str::to_owned).to_vec()));
+        assert_eq!([0, 1, 2, 3].map(|field| table.number(0, field)), [Some(-1.5), Some(2000.0), Some(1.0), None]);
+        assert_eq!([0, 1, 2].map(|field| table.number(1, field)), [None, None, Some(0.0)]);
+        assert_eq!([0, 1, 9].map(|row| table.is_deleted(row)), [false, true, false]);
+    }
+
+    #[test]
+    fn a_table_that_lies_is_refused() {
+        let good = dbf(&[("h", b'N', 3)], &[" 1.0"]);
+        for (at, byte) in [(4, 9), (8, 255), (10, 1), (10, 0), (48, 200)] {
+            let mut bytes = good.clone();
+            bytes[at] = byte;
+            assert!(Table::of(&bytes).is_err(), "byte {at}");
+        }
+        assert!(Table::of(&good[..good.len() - 1]).is_err());
+    }
+}

@@ -38,3 +38,21 @@ impl FootprintFields {
         Ok(Columns { height: find(height)?, base: self.base.as_deref().map(find).transpose()? })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_found_by_their_very_name_first() {
+        let numeric = ["HEIGHT", "height", "Base"].map(str::to_owned);
+        let among = |height: &str, base: Option<&str>| {
+            let fields = FootprintFields { height: Some(height.to_owned()), base: base.map(str::to_owned) };
+            fields.among(&numeric)
+        };
+        assert_eq!(among("height", None).unwrap(), Columns { height: 1, base: None });
+        assert_eq!(among("Height", Some("BASE")).unwrap(), Columns { height: 0, base: Some(2) });
+        let error = among("height", Some("floor")).unwrap_err().to_string();
+        assert!(error.contains("`floor`") && error.contains("HEIGHT, height, Base"), "{error}");
+    }
+}

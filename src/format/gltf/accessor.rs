@@ -141,3 +141,25 @@ pub(super) fn largest(component: ComponentType) -> Option<f64> {
         ComponentType::U32 | ComponentType::F32 => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_each_type_are_read_and_made_parts_of_one() {
+        let bytes = [0x80, 0xFF, 0x7F, 0x3F];
+        for (component, expected, part) in [
+            (ComponentType::I8, -128.0, -1.0),
+            (ComponentType::U8, 128.0, 128.0 / 255.0),
+            (ComponentType::I16, -128.0, -128.0 / 32767.0),
+            (ComponentType::U16, 65408.0, 65408.0 / 65535.0),
+            (ComponentType::U32, 1_065_353_088.0, 1_065_353_088.0),
+        ] {
+            let value = number(component, &bytes);
+            assert_eq!((value, normalized(component, value)), (expected, part), "{component:?}");
+        }
+        assert_eq!(number(ComponentType::F32, &1.5_f32.to_le_bytes()), 1.5);
+        assert_eq!(number(ComponentType::U32, &[]), 0.0);
+    }
+}

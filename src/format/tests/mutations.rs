@@ -7,8 +7,9 @@ use super::assert_sound;
 use crate::format::citygml::read_citygml;
 use crate::format::footprints::{FootprintFields, read_geopackage, read_shapefile, tests};
 use crate::format::meshes::{self, read_ply_mesh, read_stl};
+use crate::format::surface_builder::{SurfaceBuilder, SurfaceTraits};
 use crate::format::surface_error::SurfaceError;
-use crate::format::surfaces::SurfaceFile;
+use crate::format::surfaces::{Lod, SurfaceFile, SurfaceKind};
 use crate::format::tileset::{read_tile, read_tileset};
 
 /// Cuts the file before every byte, and changes every byte in three ways. Returns how many of these were refused.
@@ -128,4 +129,115 @@ fn meshes_cut_or_changed_at_any_byte_are_read_or_refused() {
     for bytes in [text, meshes::tests::binary_ply(false), meshes::tests::binary_ply(true)] {
         assert!(mutate(&bytes, ply) > bytes.len() / 2);
     }
+}
+
+/// A model made up: objects with parts, polygons with holes, at levels and kinds of all sorts, in solids or not.
+fn made_up(seed: u64) -> SurfaceFile {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut below = |count: u32| random.next_u32() % count;
+    let mut builder = SurfaceBuilder::default();
+    let mut shells = 0;
+    for number in 0..1 + below(6) {
+        let parent = (number > 0 && below(2) == 0).then_some(0);
+        let class = if parent.is_some() { "BuildingPart" } else { "Building" };
+        let object = builder.add_object(format!("house {number} & <others>"), class, parent);
+        let is_solid = below(2) == 0;
+        let lod = Some(Lod(1 + below(3) as u8, 0));
+        for _ in 0..1 + below(5) {
+            let kind =
+                [None, Some(SurfaceKind::Wall), Some(SurfaceKind::Roof), Some(SurfaceKind::Other)][below(4) as usize];
+            let mut corner = || [0, 1, 2].map(|_| f64::from(below(1 << 30)) / 1024.0 - 5e5);
+            let rings: Vec<Vec<[f64; 3]>> = (0..2).map(|_| (0..5).map(|_| corner()).collect()).collect();
+            let shell = is_solid.then_some(shells);
+            let rings = rings.iter().map(Vec::as_slice);
+            builder.add_surface(rings, SurfaceTraits { object, lod, kind, shell }).unwrap();
+        }
+        shells += u32::from(is_solid);
+    }
+    builder.file
+}
+
+/// The model as CityGML: polygons in their boundaries, solids by reference before them.
+fn written(file: &SurfaceFile) -> String {
+    let ring = |role: &str, ring: &[[f64; 3]]| {
+        let positions: Vec<String> = ring.iter().chain(&ring[..1]).flatten().map(f64::to_string).collect();
+        format!("<g:{role}><g:LinearRing><g:posList>{}</g:posList></g:LinearRing></g:{role}>", positions.join(" "))
+    };
+    let mut text = "<CityModel xmlns='http://www.opengis.net/citygml/3.0' xmlns:g='g' xmlns:x='x'>".to_owned();
+    let mut ends = String::new();
+    for (number, object) in file.objects.iter().enumerate() {
+        let id = object.id.replace('&', "&amp;").replace('<', "&lt;");
+        let own: Vec<usize> =
+            (0..file.surfaces.len()).filter(|&at| file.surfaces[at].object as usize == number).collect();
+        let first = file.surfaces[own[0]];
+        let level = first.lod.unwrap().0;
+        let property = if object.parent.is_some() { "buildingPart" } else { "cityObjectMember" };
+        text += &format!("<{property}><{} g:id='{id}'>", object.class);
+        if first.shell.is_some() {
+            let links: String = own.iter().map(|at| format!("<g:surfaceMember x:href='#p{at}'/>")).collect();
+            text += &format!(
+                "<lod{level}Solid><g:Solid><g:exterior><g:Shell>{links}</g:Shell></g:exterior></g:Solid></lod{level}Solid>"
+            );
+        }
+        for at in own {
+            let boundary = match file.surfaces[at].kind {
+                Some(SurfaceKind::Wall) => "WallSurface",
+                Some(SurfaceKind::Roof) => "RoofSurface",
+                Some(_) => "CeilingSurface",
+                None => "boundary",
+            };
+            let rings = super::rings(file, at);
+            let inside = ring("exterior", &rings[0]) + &ring("interior", &rings[1]);
+            text += &format!(
+                "<{boundary}><lod{level}MultiSurface><g:Polygon g:id='p{at}'>{inside}</g:Polygon></lod{level}MultiSurface></{boundary}>"
+            );
+        }
+        // The first stays open around its parts, unless a house stands beside it.
+        let end = format!("</{}></{property}>", object.class);
+        if number == 0 { ends = end } else { text += &end }
+    }
+    text + &ends + "</CityModel>"
+}
+
+#[test]
+fn a_model_that_is_written_and_read_is_the_same() {
+    for seed in 0..200 {
+        let mut model = made_up(seed);
+        // Houses within the first are its parts in the text.
+        for object in model.objects.iter_mut().skip(1) {
+            (object.parent, object.class) = (Some(0), "BuildingPart".to_owned());
+        }
+        model.format = "CityGML 3.0".to_owned();
+        let read = read_citygml(written(&model).as_bytes()).unwrap();
+        assert_eq!(read, model, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_shapefile_and_a_geopackage_of_the_same_footprints_are_the_same_prisms() {
+    let folder = tempfile::tempdir().unwrap();
+    let [shapes, table, package] = ["the houses.shp", "the houses.dbf", "a.gpkg"].map(|name| folder.path().join(name));
+    std::fs::write(
+        &shapes,
+        tests::shp(5, &[vec![SQUARE.to_vec(), vec![[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]]]]),
+    )
+    .unwrap();
+    std::fs::write(table, tests::dbf(&[("height", b'N', 3)], &[" 4.5"])).unwrap();
+    drop(tests::geopackage(&package));
+    let fields = FootprintFields { height: Some("height".to_owned()), base: None };
+    let (shp, gpkg) = (read_shapefile(&shapes, &fields).unwrap(), read_geopackage(&package, &fields).unwrap());
+    // The package has a second house.
+    let places = |file: &SurfaceFile| {
+        let first = (0..10).map(|surface| (super::rings(file, surface), file.surfaces[surface].kind));
+        let sorted = |ring: &Vec<[f64; 3]>| {
+            let mut ring: Vec<String> = ring.iter().map(|corner| format!("{corner:?}")).collect();
+            ring.sort();
+            ring
+        };
+        let mut all: Vec<_> =
+            first.map(|(rings, kind)| (rings.iter().map(sorted).collect::<Vec<_>>(), format!("{kind:?}"))).collect();
+        all.sort();
+        all
+    };
+    assert_eq!(places(&shp), places(&gpkg));
 }

@@ -195,3 +195,28 @@ fn gltf_with_extensions_stands_where_it_is_and_packed_ones_are_named() {
     let Some(zeros) = gltf("rel-gltf-sparse-zeros", "city.gltf") else { return };
     assert!(zeros.unwrap_err().to_string().contains("too many for"));
 }
+
+#[test]
+fn a_source_that_gives_single_bytes_is_read_as_a_whole_one() {
+    for name in ["FZK-Haus-LoD2__v3.gml", "64413325_bldg_6697_op.gml"] {
+        let Some(whole) = citygml(name) else { return };
+        let path = needs::shared(&format!("data/formats/city/{name}")).unwrap();
+        for capacity in [1, 7] {
+            let file = read_citygml(BufReader::with_capacity(capacity, File::open(&path).unwrap())).unwrap();
+            assert_eq!(file, whole);
+        }
+    }
+}
+
+#[test]
+fn real_files_that_are_cut_are_never_taken_for_whole_ones() {
+    for name in ["FZK-Haus-LoD2__v3.gml", "zurich-lod2-citygml1.xml"] {
+        let Some(path) = needs::shared(&format!("data/formats/city/{name}")) else { return };
+        let bytes = std::fs::read(path).unwrap();
+        let end = bytes.trim_ascii_end().len();
+        for cut in (1..end).step_by(997) {
+            assert!(read_citygml(&bytes[..cut]).is_err(), "{name} cut at {cut}");
+        }
+        assert!(read_citygml(&bytes[..end]).is_ok());
+    }
+}

@@ -170,3 +170,37 @@ impl Tile {
             || self.children.iter().flat_map(|Slot(child)| child).any(|child| child.has_content())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(root: &str) -> Tileset {
+        Tileset::parse(format!(r#"{{"asset": {{"version": "1.0", "gltfUpAxis": "Z"}}, "root": {root}}}"#).as_bytes())
+            .unwrap()
+    }
+
+    #[test]
+    fn tiles_that_show_nothing_take_eight_bytes() {
+        assert_eq!(size_of::<Slot>(), 8);
+        let tileset = parse(r#"{"children": [{}, {"children": [{}, {"content": {}}]}, {"content": {"url": "a"}}]}"#);
+        let is_kept: Vec<bool> = tileset.root.children.iter().map(|Slot(child)| child.is_some()).collect();
+        assert_eq!(is_kept, [false, false, true]);
+        assert!(tileset.root.has_content());
+        assert_eq!(tileset.up, UpAxis::Z);
+    }
+
+    #[test]
+    fn an_empty_tileset_has_no_content() {
+        let tileset = parse(r#"{"boundingVolume": {"box": []}, "geometricError": 1, "viewerRequestVolume": {}}"#);
+        assert!(!tileset.root.has_content());
+        assert_eq!((tileset.version.as_str(), tileset.root.refine), ("1.0", None));
+    }
+
+    #[test]
+    fn refinement_is_one_of_two_words() {
+        assert_eq!(parse(r#"{"refine": "add", "content": {"uri": "a"}}"#).root.refine, Some(Refine::Add));
+        let odd = br#"{"asset": {"version": "1.0"}, "root": {"refine": "MERGE"}}"#;
+        assert!(Tileset::parse(odd).unwrap_err().to_string().contains("MERGE"));
+    }
+}

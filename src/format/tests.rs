@@ -2,6 +2,7 @@
 
 mod mutations;
 mod real_files;
+mod recognisers;
 
 use super::surfaces::{SurfaceFile, SurfaceKind, SurfaceRecord};
 

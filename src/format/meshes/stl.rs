@@ -34,7 +34,9 @@ pub fn read_stl(bytes: &[u8], name: &str) -> Result<SurfaceFile, SurfaceError> {
 fn binary(bytes: &[u8]) -> Option<&[u8]> {
     let (header, triangles) = bytes.split_at_checked(HEADER_BYTES)?;
     let count = u32::from_le_bytes(header[HEADER_BYTES - 4..].try_into().ok()?);
-    (triangles.len() as u64 == TRIANGLE_BYTES as u64 * u64::from(count)).then_some(triangles)
+    // Without triangles any 84 bytes with zeros at the end would do.
+    let is_whole = count > 0 && triangles.len() as u64 == TRIANGLE_BYTES as u64 * u64::from(count);
+    is_whole.then_some(triangles)
 }
 
 fn is_text(bytes: &[u8]) -> bool {

@@ -12,10 +12,12 @@
 mod alignment;
 pub mod cityjson;
 pub mod bundler;
+pub mod citygml;
 pub mod colmap;
 pub mod e57;
 pub mod file;
 mod escape;
+pub mod footprints;
 pub mod gltf;
 pub mod las;
 pub mod nerfstudio;
@@ -23,6 +25,7 @@ pub mod nvm;
 mod json_kind;
 pub mod control;
 mod matrix;
+pub mod meshes;
 pub mod obj;
 pub mod openmvg;
 pub mod opensfm;
@@ -33,9 +36,15 @@ mod problem;
 pub mod ply;
 pub mod sfm_file;
 mod start;
+mod surface_builder;
+mod surface_error;
 pub mod surfaces;
+#[cfg(test)]
+mod tests;
 mod text;
 pub mod wkt;
+pub mod tileset;
+mod uri;
 
 pub use alignment::{StoredAlignment, read_alignment};
 pub use escape::escaped;
@@ -47,6 +56,7 @@ pub use problem::{
     IllFormed, LARGEST_PROBLEM_BYTES, Primitive, ProblemKind, StoredPairs, StoredPlane, StoredUp, read_problem,
 };
 pub use start::read_start;
+pub use surface_error::{Place, SurfaceError};
 #[cfg(feature = "cli")]
 pub use text::text_from;
 pub use text::{LARGEST_TEXT_BYTES, read_text};

@@ -10,6 +10,8 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::json;
 
 use super::super::file::{LARGEST_MODEL_BYTES, open_regular, read_at_most};
+use super::super::uri::{percent_decoded, shortened};
+use super::extensions::Extensions;
 use super::{GltfError, GltfProblem};
 
 /// Writers differ on whether the last group is filled up.
@@ -22,6 +24,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 pub(super) struct Buffers<'a> {
     blob: Option<&'a [u8]>,
     folder: &'a Path,
+    extensions: &'a Extensions,
     loaded: BTreeMap<usize, Loaded<'a>>,
     /// Files beside this one, by their real path and how much was asked for: many buffers may name one file.
     files: BTreeMap<(PathBuf, u64), Rc<Vec<u8>>>,
@@ -46,13 +49,18 @@ impl Loaded<'_> {
 }
 
 impl<'a> Buffers<'a> {
-    pub fn new(blob: Option<&'a [u8]>, folder: &'a Path) -> Buffers<'a> {
-        Buffers { blob, folder, loaded: BTreeMap::new(), files: BTreeMap::new(), bytes_beside: 0 }
+    pub fn new(blob: Option<&'a [u8]>, folder: &'a Path, extensions: &'a Extensions) -> Buffers<'a> {
+        Buffers { blob, folder, extensions, loaded: BTreeMap::new(), files: BTreeMap::new(), bytes_beside: 0 }
     }
 
     /// The bytes of a buffer that was loaded.
     pub fn bytes(&self, index: usize) -> Option<&[u8]> {
         self.loaded.get(&index).map(Loaded::bytes)
+    }
+
+    /// What the file says of its extensions.
+    pub fn extensions(&self) -> &Extensions {
+        self.extensions
     }
 
     /// Bytes that were read from files beside.
@@ -65,6 +73,7 @@ impl<'a> Buffers<'a> {
         if self.loaded.contains_key(&index) {
             return Ok(());
         }
+        self.extensions.check_buffer(index)?;
         let claimed = buffer.byte_length.0;
         let at = |problem| GltfError::at(format!("buffers[{index}]"), problem);
         let bytes = match &buffer.uri {
@@ -128,29 +137,4 @@ fn relative_path(uri: &str) -> Result<PathBuf, &'static str> {
         );
     }
     Ok(path.to_owned())
-}
-
-fn percent_decoded(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, tail @ ..] = rest {
-        let hex = |digit: u8| char::from(digit).to_digit(16);
-        match (first, tail) {
-            (b'%', [high, low, after @ ..]) if hex(*high).is_some() && hex(*low).is_some() => {
-                bytes.push((16 * hex(*high)? + hex(*low)?) as u8);
-                rest = after;
-            }
-            _ => {
-                bytes.push(*first);
-                rest = tail;
-            }
-        }
-    }
-    String::from_utf8(bytes).ok()
-}
-
-/// Enough of a URI to know it by.
-fn shortened(uri: &str) -> String {
-    const SHOWN: usize = 60;
-    if uri.chars().count() <= SHOWN { uri.to_owned() } else { uri.chars().take(SHOWN).chain("...".chars()).collect() }
 }

@@ -7,6 +7,7 @@ use gltf::json::validation::{Checked, Error, Validate};
 use serde::Deserialize;
 
 use super::buffers::Buffers;
+use super::extensions::Extensions;
 use super::nodes::{json_error, missing};
 use super::{GltfError, GltfProblem};
 
@@ -19,8 +20,6 @@ const GEOMETRY: [&str; 4] = ["accessors", "bufferViews", "buffers", "meshes"];
 struct Geometry {
     asset: json::Asset,
     #[serde(default)]
-    extensions_required: Vec<String>,
-    #[serde(default)]
     accessors: Vec<json::Accessor>,
     #[serde(default)]
     buffer_views: Vec<json::buffer::View>,
@@ -30,15 +29,10 @@ struct Geometry {
     meshes: Vec<json::Mesh>,
 }
 
-/// Extensions that change how a surface looks, and not where it is.
-const LOOKS: [&str; 6] =
-    ["KHR_materials", "KHR_texture", "EXT_texture", "KHR_lights", "EXT_structural_metadata", "EXT_mesh_features"];
-
 /// Parses the JSON and checks what all geometry hangs on.
-pub(super) fn document(json: &[u8]) -> Result<gltf::Document, GltfError> {
-    let Geometry { asset, extensions_required, accessors, buffer_views, buffers, meshes } =
+pub(super) fn document(json: &[u8], extensions: &Extensions) -> Result<gltf::Document, GltfError> {
+    let Geometry { asset, accessors, buffer_views, buffers, meshes } =
         serde_json::from_slice(json).map_err(|error| json_error(&error))?;
-    check_extensions(&extensions_required)?;
     let root = json::Root { asset, accessors, buffer_views, buffers, meshes, ..json::Root::default() };
     check_primitives(&root)?;
     let mut first = None;
@@ -46,7 +40,10 @@ pub(super) fn document(json: &[u8]) -> Result<gltf::Document, GltfError> {
         let path = path();
         let part = path.as_str().split(['.', '[']).next().unwrap_or_default();
         if first.is_none() && GEOMETRY.contains(&part) && is_grave(path.as_str(), error) {
-            first = Some(GltfError::at(path.as_str(), GltfProblem::Invalid { what: explained(error).to_owned() }));
+            let invalid = || GltfError::at(path.as_str(), GltfProblem::Invalid { what: explained(error).to_owned() });
+            let is_without_bytes = part == "accessors" && path.as_str().ends_with("bufferView");
+            let packed = if is_without_bytes { extensions.check_accessor(path.as_str()) } else { Ok(()) };
+            first = Some(packed.err().unwrap_or_else(invalid));
         }
     });
     match first {
@@ -90,20 +87,6 @@ fn explained(error: Error) -> &'static str {
     }
 }
 
-fn check_extensions(required: &[String]) -> Result<(), GltfError> {
-    let needed = required.iter().find(|name| !LOOKS.iter().any(|looks| name.starts_with(looks)));
-    let Some(name) = needed else { return Ok(()) };
-    let remedy = match name.as_str() {
-        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
-            "write the file without compression (gltf-transform copy decodes it)"
-        }
-        "KHR_mesh_quantization" => "write positions as 32-bit floats (gltf-transform dequantize)",
-        "CESIUM_RTC" => "put the shift into a node's translation",
-        _ => "write the file without it",
-    };
-    Err(GltfError::at("extensionsRequired", GltfProblem::Extension { name: name.clone(), remedy }))
-}
-
 /// The crate's own validation looks accessors up before it has checked their index.
 fn check_primitives(root: &json::Root) -> Result<(), GltfError> {
     for (mesh_at, mesh) in root.meshes.iter().enumerate() {
@@ -119,30 +102,77 @@ fn check_primitives(root: &json::Root) -> Result<(), GltfError> {
     Ok(())
 }
 
-/// An accessor of three floats whose bytes are all there.
-pub(super) fn positions(root: &json::Root, index: usize, buffers: &mut Buffers<'_>) -> Result<(), GltfError> {
-    let accessor = accessor(root, index)?;
-    let is_float = matches!(accessor.component_type, Checked::Valid(GenericComponentType(ComponentType::F32)))
-        && accessor.type_ == Checked::Valid(Type::Vec3);
-    if !is_float {
-        let expected = "three 32-bit floats (VEC3, FLOAT)";
-        return Err(at_accessor(index, GltfProblem::AccessorType { found: described(accessor), expected }));
-    }
-    check_bytes(root, index, accessor, buffers)
+/// What an accessor must be for its use.
+#[derive(Debug)]
+pub(super) struct Expected {
+    pub kind: Type,
+    pub components: &'static [ComponentType],
+    pub words: &'static str,
 }
 
-/// An accessor of unsigned whole numbers whose bytes are all there.
-pub(super) fn indices(root: &json::Root, index: usize, buffers: &mut Buffers<'_>) -> Result<(), GltfError> {
+const POSITIONS: Expected =
+    Expected { kind: Type::Vec3, components: &[ComponentType::F32], words: "three 32-bit floats (VEC3, FLOAT)" };
+
+const QUANTIZED_POSITIONS: Expected = Expected {
+    kind: Type::Vec3,
+    components: &[ComponentType::F32, ComponentType::I8, ComponentType::U8, ComponentType::I16, ComponentType::U16],
+    words: "three floats or whole numbers of 8 or 16 bits (VEC3)",
+};
+
+const INDICES: Expected = Expected {
+    kind: Type::Scalar,
+    components: &[ComponentType::U8, ComponentType::U16, ComponentType::U32],
+    words: "unsigned whole numbers (SCALAR, UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT)",
+};
+
+const FEATURES: Expected = Expected {
+    kind: Type::Scalar,
+    components: &[
+        ComponentType::F32,
+        ComponentType::I8,
+        ComponentType::U8,
+        ComponentType::I16,
+        ComponentType::U16,
+        ComponentType::U32,
+    ],
+    words: "single numbers (SCALAR)",
+};
+
+/// An accessor of positions whose bytes are all there; returns how many.
+pub(super) fn positions(root: &json::Root, index: usize, buffers: &mut Buffers<'_>) -> Result<usize, GltfError> {
+    let expected = if buffers.extensions().is_quantized { &QUANTIZED_POSITIONS } else { &POSITIONS };
+    accessor_of(root, index, expected, buffers)
+}
+
+/// An accessor of unsigned whole numbers whose bytes are all there; returns how many.
+pub(super) fn indices(root: &json::Root, index: usize, buffers: &mut Buffers<'_>) -> Result<usize, GltfError> {
+    accessor_of(root, index, &INDICES, buffers)
+}
+
+/// An accessor of numbers of features whose bytes are all there; returns how many.
+pub(super) fn features(root: &json::Root, index: usize, buffers: &mut Buffers<'_>) -> Result<usize, GltfError> {
+    accessor_of(root, index, &FEATURES, buffers)
+}
+
+/// Checks type and bytes of an accessor; returns how many elements it has.
+pub(super) fn accessor_of(
+    root: &json::Root,
+    index: usize,
+    expected: &Expected,
+    buffers: &mut Buffers<'_>,
+) -> Result<usize, GltfError> {
     let accessor = accessor(root, index)?;
-    let is_unsigned = matches!(
-        accessor.component_type,
-        Checked::Valid(GenericComponentType(ComponentType::U8 | ComponentType::U16 | ComponentType::U32))
-    );
-    if accessor.type_ != Checked::Valid(Type::Scalar) || !is_unsigned {
-        let expected = "unsigned whole numbers (SCALAR, UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT)";
-        return Err(at_accessor(index, GltfProblem::AccessorType { found: described(accessor), expected }));
+    let is_component = match accessor.component_type {
+        Checked::Valid(GenericComponentType(component)) => expected.components.contains(&component),
+        Checked::Invalid => false,
+    };
+    if accessor.type_ != Checked::Valid(expected.kind) || !is_component {
+        let problem = GltfProblem::AccessorType { found: described(accessor), expected: expected.words };
+        return Err(at_accessor(index, problem));
     }
-    check_bytes(root, index, accessor, buffers)
+    check_bytes(root, index, accessor, buffers)?;
+    // Elements with bytes were found to be there, others are bounded by `MeshReader`.
+    Ok(usize::try_from(accessor.count.0).unwrap_or(usize::MAX))
 }
 
 fn accessor(root: &json::Root, index: usize) -> Result<&json::Accessor, GltfError> {
@@ -150,7 +180,7 @@ fn accessor(root: &json::Root, index: usize) -> Result<&json::Accessor, GltfErro
     root.accessors.get(index).ok_or_else(|| at_accessor(index, missing("accessor", index, count)))
 }
 
-fn at_accessor(index: usize, problem: GltfProblem) -> GltfError {
+pub(super) fn at_accessor(index: usize, problem: GltfProblem) -> GltfError {
     GltfError::at(format!("accessors[{index}]"), problem)
 }
 
@@ -235,25 +265,39 @@ fn named(error: GltfError, accessor: usize) -> GltfError {
 }
 
 /// Elements in a buffer view.
-struct Items {
-    count: u64,
-    offset: u64,
-    item_bytes: u64,
+pub(super) struct Items {
+    pub count: u64,
+    pub offset: u64,
+    pub item_bytes: u64,
 }
 
 /// The bytes from the first element to the last.
-struct Range<'b> {
-    bytes: &'b [u8],
-    stride: usize,
+pub(super) struct Range<'b> {
+    pub bytes: &'b [u8],
+    pub stride: usize,
 }
 
 impl Items {
-    /// Checks view and buffer, with figures that no file can make overflow.
+    /// Makes sure that the buffer's bytes are there, and finds the elements in them.
     fn check<'b>(
         &self,
         root: &json::Root,
         view_index: usize,
         buffers: &'b mut Buffers<'_>,
+    ) -> Result<Range<'b>, GltfError> {
+        let buffer = root.buffer_views.get(view_index).map(|view| view.buffer.value());
+        if let Some((index, buffer)) = buffer.and_then(|index| Some((index, root.buffers.get(index)?))) {
+            buffers.load(index, buffer)?;
+        }
+        self.range(root, view_index, buffers)
+    }
+
+    /// Finds the elements in a buffer that was loaded, with figures that no file can make overflow.
+    pub fn range<'b>(
+        &self,
+        root: &json::Root,
+        view_index: usize,
+        buffers: &'b Buffers<'_>,
     ) -> Result<Range<'b>, GltfError> {
         let at = |problem| GltfError::at(format!("bufferViews[{view_index}]"), problem);
         let view = root
@@ -273,8 +317,9 @@ impl Items {
         }
         let buffer_index = view.buffer.value();
         let count = root.buffers.len();
-        let buffer = root.buffers.get(buffer_index).ok_or_else(|| at(missing("buffer", buffer_index, count)))?;
-        buffers.load(buffer_index, buffer)?;
+        if buffer_index >= count {
+            return Err(at(missing("buffer", buffer_index, count)));
+        }
         let available = buffers.bytes(buffer_index).unwrap_or_default();
         let view_start = u128::from(view.byte_offset.map_or(0, |offset| offset.0));
         if view_start + u128::from(length) > available.len() as u128 {

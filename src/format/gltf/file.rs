@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::buffers::Buffers;
 use super::container::{self, is_glb};
+use super::extensions::Extensions;
 use super::mesh::MeshReader;
 use super::{check, nodes};
 use crate::format::escaped;
@@ -11,8 +12,10 @@ use crate::format::escaped;
 /// Triangles of the scene in its own frame: metres, y up.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GltfFile {
-    /// In the order in which the scene's nodes are walked, children after their parents.
+    /// In the order in which the scene's nodes are walked, children after their parents; instances of a node one after the other.
     pub parts: Vec<GltfPart>,
+    /// CESIUM_RTC, which is in all positions already.
+    pub center: Option<[f64; 3]>,
     /// Primitives of points or lines, which have no surface.
     pub without_surface: u64,
     /// Node that holds the first of them.
@@ -20,14 +23,18 @@ pub struct GltfFile {
 }
 
 /// A mesh where one node puts it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct GltfPart {
     /// The node's name, else the mesh's, else the node's number.
     pub name: String,
     pub positions: Vec<[f64; 3]>,
     /// Counter-clockwise seen from outside, also where the node mirrors the mesh.
     pub triangles: Vec<[u32; 3]>,
-    /// Distance of neighbouring f32 numbers at the largest coordinate: no finer than this can the part be known, metres.
+    /// Number of the feature that each vertex is part of (`_BATCHID`, `_FEATURE_ID_0`), [`u32::MAX`] for none; empty where the
+    /// file tells no features apart.
+    pub features: Vec<u32>,
+    /// Distance of neighbouring f32 numbers at the largest coordinate, or the step of whole numbers: no finer than this can the
+    /// part be known, metres.
     pub spacing_m: f64,
 }
 
@@ -91,16 +98,22 @@ impl GltfError {
 pub fn read_gltf(bytes: &[u8], folder: &Path) -> Result<GltfFile, GltfError> {
     let (json, blob) = if is_glb(bytes) { container::split(bytes)? } else { (bytes, None) };
     check::version(json)?;
+    let extensions = Extensions::of(json)?;
     let tree = nodes::read(json)?;
-    let document = check::document(json)?;
-    let placed = nodes::place(&tree, &document.as_json().meshes)?;
-    let mut reader = MeshReader::new(&document, Buffers::new(blob, folder), bytes.len());
-    for place in &placed {
-        reader.check(place).map_err(|error| error.of(&place.name()))?;
+    let document = check::document(json, &extensions)?;
+    let placed = nodes::place(&tree, &document.as_json().meshes, extensions.center)?;
+    let mut reader = MeshReader::new(&document, Buffers::new(blob, folder, &extensions), bytes.len());
+    let mut instances = Vec::new();
+    for place in placed {
+        let name = place.name();
+        for instance in reader.instances(place).map_err(|error| error.of(&name))? {
+            reader.check(&instance).map_err(|error| error.of(&instance.name()))?;
+            instances.push(instance);
+        }
     }
-    let mut file = GltfFile::default();
-    for place in &placed {
-        reader.read(place, &mut file).map_err(|error| error.of(&place.name()))?;
+    let mut file = GltfFile { center: extensions.center, ..GltfFile::default() };
+    for instance in &instances {
+        reader.read(instance, &mut file).map_err(|error| error.of(&instance.name()))?;
     }
     Ok(file)
 }

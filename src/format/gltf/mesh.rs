@@ -2,9 +2,10 @@
 
 use gltf::mesh::Mode;
 use gltf::mesh::util::ReadIndices;
-use gltf::{Document, Primitive, Semantic};
+use gltf::{Accessor, Document, Primitive, Semantic};
 use nalgebra::Vector3;
 
+use super::accessor::{Values, largest};
 use super::buffers::Buffers;
 use super::nodes::{Placed, missing};
 use super::{GltfError, GltfFile, GltfPart, GltfProblem, check};
@@ -57,6 +58,16 @@ impl<'a> MeshReader<'a> {
         self.check_room(self.elements, placed)
     }
 
+    /// A mesh that stands many times becomes as many that stand once; to be called before the check.
+    pub fn instances<'p>(&mut self, placed: Placed<'p>) -> Result<Vec<Placed<'p>>, GltfError> {
+        let Some(instancing) = placed.instancing else { return Ok(vec![placed]) };
+        let root = self.document.as_json();
+        let count = instancing.check(root, &mut self.buffers)?;
+        self.check_room(count.saturating_mul(ELEMENTS_OF_A_PART), &placed)?;
+        let places = instancing.places(root, &self.buffers, count)?;
+        Ok(places.iter().enumerate().map(|(number, place)| placed.instance(number, place)).collect())
+    }
+
     /// Refuses more elements than the bytes that are there can stand for.
     fn check_room(&self, elements: usize, placed: &Placed<'_>) -> Result<(), GltfError> {
         let bytes = self.file_bytes.saturating_add(self.buffers.bytes_beside());
@@ -82,6 +93,13 @@ impl<'a> MeshReader<'a> {
             let positions = primitive.get(&Semantic::Positions).ok_or_else(|| invalid("primitive has no POSITION"))?;
             check::positions(root, positions.index(), &mut self.buffers)?;
             size = size.saturating_add(positions.count());
+            if let Some(features) = features_of(&primitive) {
+                let found = check::features(root, features.index(), &mut self.buffers)?;
+                if found != positions.count() {
+                    return Err(invalid("one number of a feature is needed for every vertex"));
+                }
+                size = size.saturating_add(found);
+            }
             if let Some(indices) = primitive.indices() {
                 check::indices(root, indices.index(), &mut self.buffers)?;
                 size = size.saturating_add(indices.count());
@@ -96,17 +114,21 @@ impl<'a> MeshReader<'a> {
     /// Adds one mesh where it stands.
     pub fn read(&self, placed: &Placed<'_>, file: &mut GltfFile) -> Result<(), GltfError> {
         let Some(mesh) = self.document.meshes().nth(placed.mesh) else { return Ok(()) };
-        let (positions, triangles) = (Vec::new(), Vec::new());
-        let mut part = GltfPart { name: placed.name(), positions, triangles, spacing_m: 0.0 };
+        let mut part = GltfPart { name: placed.name(), ..GltfPart::default() };
         for primitive in mesh.primitives() {
             if has_surface(&primitive) {
                 let place = || format!("meshes[{}].primitives[{}]", placed.mesh, primitive.index());
-                self.read_primitive(&primitive, placed, &mut part)
-                    .map_err(|problem| GltfError::at(place(), problem))?;
+                self.read_primitive(&primitive, placed, &mut part).map_err(|error| match error.place.as_str() {
+                    "" => GltfError { place: place(), ..error },
+                    _ => error,
+                })?;
             } else {
                 file.without_surface += 1;
                 file.first_without_surface.get_or_insert_with(|| placed.name());
             }
+        }
+        if !part.features.is_empty() {
+            part.features.resize(part.positions.len(), NO_FEATURE);
         }
         file.parts.extend((!part.triangles.is_empty()).then_some(part));
         Ok(())
@@ -117,12 +139,21 @@ impl<'a> MeshReader<'a> {
         primitive: &Primitive<'_>,
         placed: &Placed<'_>,
         part: &mut GltfPart,
-    ) -> Result<(), GltfProblem> {
-        let reader = primitive.reader(|buffer| self.buffers.bytes(buffer.index()));
-        let unreadable = || GltfProblem::Invalid { what: "POSITION cannot be read".to_owned() };
-        let positions = reader.read_positions().ok_or_else(unreadable)?;
+    ) -> Result<(), GltfError> {
+        let here = |problem| GltfError::at("", problem);
+        let accessor = primitive.get(&Semantic::Positions);
+        let accessor =
+            accessor.ok_or_else(|| here(GltfProblem::Invalid { what: "primitive has no POSITION".to_owned() }))?;
+        let root = self.document.as_json();
+        let positions = Values::of(root, accessor.index(), &self.buffers)?;
         let first = part.positions.len();
-        let vertices = place_vertices(positions, placed, part)?;
+        let vertices = place_vertices(positions, step_of(&accessor), placed, part).map_err(here)?;
+        if let Some(accessor) = features_of(primitive) {
+            part.features.resize(first, NO_FEATURE);
+            let features = Values::<1>::of(root, accessor.index(), &self.buffers)?;
+            part.features.extend(features.map(|[feature]| feature as u32));
+        }
+        let reader = primitive.reader(|buffer| self.buffers.bytes(buffer.index()));
         let indices: Vec<u32> = match reader.read_indices() {
             Some(ReadIndices::U8(indices)) => indices.map(u32::from).collect(),
             Some(ReadIndices::U16(indices)) => indices.map(u32::from).collect(),
@@ -130,7 +161,7 @@ impl<'a> MeshReader<'a> {
             None => (0..vertices as u32).collect(),
         };
         if let Some(&index) = indices.iter().find(|&&index| index as usize >= vertices) {
-            return Err(GltfProblem::IndexOutOfRange { index, vertices });
+            return Err(here(GltfProblem::IndexOutOfRange { index, vertices }));
         }
         let is_mirrored = placed.linear.determinant() < 0.0;
         let turned = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
@@ -144,17 +175,41 @@ fn has_surface(primitive: &Primitive<'_>) -> bool {
     !matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip)
 }
 
+/// The number of a vertex that says of no feature that it is part of it.
+pub(super) const NO_FEATURE: u32 = u32::MAX;
+
+/// Numbers of features, by vertex: 3D Tiles 1.0 has them under one name, EXT_mesh_features under the other.
+fn features_of<'a>(primitive: &Primitive<'a>) -> Option<Accessor<'a>> {
+    ["BATCHID", "FEATURE_ID_0"].iter().find_map(|name| primitive.get(&Semantic::Extras((*name).to_owned())))
+}
+
+/// How finely positions are told: by the size of the coordinate, or by the whole number one.
+#[derive(Clone, Copy)]
+enum Step {
+    OfFloats,
+    Fixed(f64),
+}
+
+fn step_of(accessor: &Accessor<'_>) -> Step {
+    match (largest(accessor.data_type()), accessor.normalized()) {
+        (Some(largest), true) => Step::Fixed(largest.recip()),
+        (Some(_), false) => Step::Fixed(1.0),
+        (None, _) => Step::OfFloats,
+    }
+}
+
 /// Adds the vertices in the scene's frame; returns how many they are.
 fn place_vertices(
-    positions: impl Iterator<Item = [f32; 3]>,
+    positions: impl Iterator<Item = [f64; 3]>,
+    step: Step,
     placed: &Placed<'_>,
     part: &mut GltfPart,
 ) -> Result<usize, GltfProblem> {
     let first = part.positions.len();
-    let mut largest: f32 = 0.0;
+    let mut largest: f64 = 0.0;
     for position in positions {
         largest = position.iter().fold(largest, |largest, value| largest.max(value.abs()));
-        let in_scene = placed.linear * Vector3::from(position.map(f64::from)) + placed.shift;
+        let in_scene = placed.linear * Vector3::from(position) + placed.shift;
         if !in_scene.iter().all(|value| value.abs() <= COORDINATE_LIMIT) {
             let vertex = part.positions.len() - first;
             return Err(GltfProblem::OutOfReach { vertex, limit: COORDINATE_LIMIT });
@@ -162,8 +217,11 @@ fn place_vertices(
         part.positions.push(in_scene.into());
     }
     let stretch = placed.linear.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
-    let spacing = f64::from(largest) * f64::from(f32::EPSILON) * stretch;
-    part.spacing_m = part.spacing_m.max(spacing);
+    let step = match step {
+        Step::OfFloats => largest * f64::from(f32::EPSILON),
+        Step::Fixed(step) => step,
+    };
+    part.spacing_m = part.spacing_m.max(step * stretch);
     Ok(part.positions.len() - first)
 }
 

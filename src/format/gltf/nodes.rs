@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 
+use super::instancing::Instancing;
 use super::{GltfError, GltfProblem};
 
 /// A rotation shorter than this has no direction; the standard asks for length one.
@@ -58,6 +59,13 @@ struct Node {
     mesh: Option<u32>,
     #[serde(default)]
     children: Box<[u32]>,
+    extensions: Option<Box<OfNode>>,
+}
+
+#[derive(Deserialize)]
+struct OfNode {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    instancing: Option<Instancing>,
 }
 
 /// An index of at most 32 bits, looked at and not kept.
@@ -122,9 +130,22 @@ pub(super) struct Placed<'a> {
     pub mesh: usize,
     pub linear: Matrix3<f64>,
     pub shift: Vector3<f64>,
+    /// Where the mesh stands many times; then `linear` and `shift` are the node's.
+    pub instancing: Option<&'a Instancing>,
+    /// Which of many instances it is, from 0.
+    instance: Option<usize>,
+}
+
+impl<'a> Placed<'a> {
+    /// One instance of many, placed in the node's frame.
+    pub fn instance(&self, number: usize, place: &Affine) -> Placed<'a> {
+        let Affine { linear, shift } = place.after(&Affine { linear: self.linear, shift: self.shift });
+        Placed { linear, shift, instancing: None, instance: Some(number), ..*self }
+    }
 }
 
 /// What shows a mesh, by its number.
+#[derive(Clone, Copy)]
 enum ShownBy {
     Node(u32),
     /// In a file without nodes.
@@ -132,13 +153,14 @@ enum ShownBy {
 }
 
 impl Placed<'_> {
-    /// The node's name, else the mesh's, else a number.
+    /// The node's name, else the mesh's, else a number; and which instance it is.
     pub fn name(&self) -> String {
-        match (self.name, &self.shown_by) {
+        let name = match (self.name, &self.shown_by) {
             (Some(name), _) => name.to_owned(),
             (None, ShownBy::Node(node)) => format!("node {node}"),
             (None, ShownBy::Itself) => format!("mesh {}", self.mesh),
-        }
+        };
+        self.instance.map_or(name.clone(), |instance| format!("{name} instance {instance}"))
     }
 
     /// Bytes of the name.
@@ -155,10 +177,11 @@ impl Placed<'_> {
     }
 }
 
+/// `x -> linear * x + shift`
 #[derive(Clone, Copy)]
-struct Affine {
-    linear: Matrix3<f64>,
-    shift: Vector3<f64>,
+pub(super) struct Affine {
+    pub linear: Matrix3<f64>,
+    pub shift: Vector3<f64>,
 }
 
 const IDENTITY: Affine =
@@ -176,11 +199,16 @@ pub(super) fn json_error(error: &serde_json::Error) -> GltfError {
     GltfError::at(place, GltfProblem::Json { message })
 }
 
-/// All meshes of the scene that is shown, walked from the roots down in file order.
-pub(super) fn place<'a>(tree: &'a Tree, meshes: &'a [json::Mesh]) -> Result<Vec<Placed<'a>>, GltfError> {
+/// All meshes of the scene that is shown, walked from the roots down in file order; the scene's origin stands at `center`.
+pub(super) fn place<'a>(
+    tree: &'a Tree,
+    meshes: &'a [json::Mesh],
+    center: Option<[f64; 3]>,
+) -> Result<Vec<Placed<'a>>, GltfError> {
+    let scene = Affine { shift: Vector3::from(center.unwrap_or_default()), ..IDENTITY };
     let nodes = &tree.nodes;
     if nodes.is_empty() {
-        return Ok(lone_meshes(meshes));
+        return Ok(lone_meshes(meshes, &scene));
     }
     /// Siblings not yet walked, and their parent's transform.
     struct Level<'n> {
@@ -190,7 +218,7 @@ pub(super) fn place<'a>(tree: &'a Tree, meshes: &'a [json::Mesh]) -> Result<Vec<
     let roots = tree.roots()?;
     let mut placed = Vec::new();
     let mut is_seen = vec![false; nodes.len()];
-    let mut open = vec![Level { left: roots.iter(), parent: IDENTITY }];
+    let mut open = vec![Level { left: roots.iter(), parent: scene }];
     while let Some(Level { left, parent }) = open.last_mut() {
         let Some(&number) = left.next() else {
             open.pop();
@@ -208,7 +236,9 @@ pub(super) fn place<'a>(tree: &'a Tree, meshes: &'a [json::Mesh]) -> Result<Vec<
         if let Some(mesh) = node.mesh {
             let mesh = mesh as usize;
             let name = node.name.as_deref().or_else(|| meshes.get(mesh)?.name.as_deref());
-            placed.push(Placed { name, shown_by: ShownBy::Node(number), mesh, linear, shift });
+            let shown_by = ShownBy::Node(number);
+            let instancing = node.extensions.as_ref().and_then(|extensions| extensions.instancing.as_ref());
+            placed.push(Placed { name, shown_by, mesh, linear, shift, instancing, instance: None });
         }
         open.push(Level { left: node.children.iter(), parent: Affine { linear, shift } });
     }
@@ -236,14 +266,16 @@ impl Tree {
 }
 
 /// A file that has meshes and no nodes shows nothing by the standard; whoever gives it as a city means the meshes.
-fn lone_meshes(meshes: &[json::Mesh]) -> Vec<Placed<'_>> {
-    let Affine { linear, shift } = IDENTITY;
+fn lone_meshes<'a>(meshes: &'a [json::Mesh], scene: &Affine) -> Vec<Placed<'a>> {
+    let Affine { linear, shift } = *scene;
     let placed = meshes.iter().enumerate().map(|(mesh, shown)| Placed {
         name: shown.name.as_deref(),
         shown_by: ShownBy::Itself,
         mesh,
         linear,
         shift,
+        instancing: None,
+        instance: None,
     });
     placed.collect()
 }
@@ -262,13 +294,17 @@ impl Node {
             let linear = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
             return Ok(Affine { linear, shift: Vector3::new(m[12], m[13], m[14]) });
         }
-        let [x, y, z, w] = self.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-        let turned = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), SHORTEST_QUATERNION)
-            .ok_or_else(|| GltfProblem::Invalid { what: "node rotation is a quaternion of length zero".to_owned() })?;
-        let scale = Matrix3::from_diagonal(&Vector3::from(self.scale.unwrap_or([1.0; 3])));
-        let linear = turned.to_rotation_matrix().into_inner() * scale;
-        Ok(Affine { linear, shift: Vector3::from(self.translation.unwrap_or_default()) })
+        let rotation = self.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        affine_of(self.translation.unwrap_or_default(), rotation, self.scale.unwrap_or([1.0; 3]))
     }
+}
+
+/// Scale, then rotation (a quaternion x y z w of any length but zero), then translation.
+pub(super) fn affine_of(translation: [f64; 3], [x, y, z, w]: [f64; 4], scale: [f64; 3]) -> Result<Affine, GltfProblem> {
+    let turned = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), SHORTEST_QUATERNION)
+        .ok_or_else(|| GltfProblem::Invalid { what: "node rotation is a quaternion of length zero".to_owned() })?;
+    let linear = turned.to_rotation_matrix().into_inner() * Matrix3::from_diagonal(&Vector3::from(scale));
+    Ok(Affine { linear, shift: Vector3::from(translation) })
 }
 
 impl Affine {

@@ -1,3 +1,4 @@
+mod extensions_read;
 mod refusals;
 
 use base64::Engine;

@@ -115,9 +115,6 @@ fn shared_files_hold_what_their_readme_says() {
     for (name, expected, facets) in files {
         let model = read(&shared.join(name));
         check(&model, expected);
-        for w in &model.warnings {
-            println!("{w}");
-        }
         assert_eq!(model.facets.len(), facets, "{name}");
     }
     let zurich = read(&shared.join("zurich_12.city.json"));
@@ -129,9 +126,5 @@ fn shared_templates_are_put_at_their_places() {
     let Some(shared) = shared("data/formats/city") else { return };
     let model = read(&shared.join("geom_temp.city.jsonl"));
     let found = contents(&model);
-    for w in &model.warnings {
-        println!("{w}");
-    }
-    println!("{found:#?}");
     assert_eq!((found.objects, found.parts), (18, 0));
 }

@@ -313,6 +313,10 @@ fn planes_of_a_cityjson_file_tell_its_levels_and_its_reference_system() {
     let said =
         stdout(&cityweld(&room, &["planes", &city, "--lod", "1.2", "--city-unit", "cm", "--city-origin", "1,2,3"]));
     assert!(said.contains("3 objects, 22 facets") && said.contains("x           851."), "{said}");
+    // Objects without polygons are no city to align with, but there is nothing wrong with the file.
+    let bare = cityweld(&room, &["planes", &repository("tests/data/formats/city/geometry_instance.city.json")]);
+    assert_eq!(bare.status.code(), Some(0));
+    assert!(stderr(&bare).contains("2 points and lines, passed over"), "{}", stderr(&bare));
     let report: serde_json::Value =
         serde_json::from_str(&stdout(&cityweld(&room, &["planes", &city, "--json"]))).unwrap();
     assert_eq!(report["crs"]["epsg"], 7415);

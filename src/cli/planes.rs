@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use crate::city::read_city;
+use crate::city::{CityError, CityModel, read_city, read_city_contents};
 use crate::export::{Output, OutputKind, planes_report, write_planes_glb};
 use crate::planes::city_planes;
 use anyhow::{Context, Result, bail};
 
 use super::args::PlanesArgs;
 use super::plan::{CityFiles, keeps_inputs};
+use super::print::Voice;
 use super::roles::{self, Role};
 use super::{Outcome, Session, summary};
 
@@ -26,7 +27,7 @@ pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
     let voice = &session.voice;
 
     voice.bar.show("reading the city", 0, 0);
-    let city = read_city(&files.city, &files.terrain, &files.options)?;
+    let city = read(&files, args, voice)?;
     voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));
     voice.bar.show("planes", 0, 0);
     let planes = city_planes(&city);
@@ -50,6 +51,21 @@ pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
         voice.result(&summary::of_city(&city, &planes, &names, written, voice.seconds()), written)?;
     }
     Ok(Outcome::Good)
+}
+
+/// Reads the city. One whose format names its objects, and whose objects are all without polygons, is shown as empty where nothing is
+/// to be written.
+fn read(files: &CityFiles, args: &PlanesArgs, voice: &Voice) -> Result<CityModel> {
+    let error = match read_city(&files.city, &files.terrain, &files.options) {
+        Err(error @ CityError::NoFaces { .. }) if args.output.is_none() => error,
+        city => return Ok(city?),
+    };
+    let contents = read_city_contents(std::slice::from_ref(&files.city))?;
+    if !contents.iter().any(|(_, contents)| contents.objects > 0 && contents.polygons.is_empty()) {
+        return Err(error.into());
+    }
+    voice.warnings(&[error.to_string()]);
+    Ok(CityModel::default())
 }
 
 fn begin(path: &Path, args: &PlanesArgs, session: &Session) -> Result<(Output, Form)> {

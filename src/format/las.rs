@@ -69,16 +69,22 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
     let length = file.metadata().map_err(unreadable)?.len();
     check_head(&mut file, length).map_err(|problem| fault("header".into(), problem))?;
     file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
-    let told = |error: las::Error| super::escaped(&error.to_string()).to_string();
-    let mut reader = las::Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(error)))?;
+    let mut reader = las::Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(&error)))?;
     let header = reader.header().clone();
-    let count = header.number_of_points();
     check_count(&header, length).map_err(|problem| fault("header".into(), problem))?;
-    let mut cloud = Collector::new(&header);
+    // The decoder of LAZ panics on some damaged streams.
+    let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| points(path, &mut reader, &header)));
+    decoded.unwrap_or_else(|_| Err(fault("points".into(), "the packed points are damaged".into())))
+}
+
+fn points(path: &Path, reader: &mut las::Reader, header: &las::Header) -> Result<LasCloud, LasError> {
+    let fault = |place: String, problem: String| LasError::Malformed { path: path.into(), place, problem };
+    let count = header.number_of_points();
+    let mut cloud = Collector::new(header);
     let mut read = 0;
     while read < count {
         let piece = reader.read_points(POINTS_AT_ONCE).map_err(|error| {
-            fault(format!("point {read} to {} of {count}", (read + POINTS_AT_ONCE).min(count)), told(error))
+            fault(format!("point {read} to {} of {count}", (read + POINTS_AT_ONCE).min(count)), told(&error))
         })?;
         if piece.is_empty() {
             return Err(fault(format!("point {read} of {count}"), "the file ends before".into()));
@@ -86,7 +92,11 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
         read += piece.len() as u64;
         cloud.add(&piece);
     }
-    Ok(cloud.finish(&header))
+    Ok(cloud.finish(header))
+}
+
+fn told(error: &las::Error) -> String {
+    super::escaped(&error.to_string()).to_string()
 }
 
 /// Offsets and lengths that the crate takes memory for, against the length of the file.
@@ -115,6 +125,10 @@ fn check_count(header: &las::Header, length: u64) -> Result<(), String> {
     };
     if count > most {
         return Err(format!("it says {count} points, of which at most {most} fit into the file's {length} bytes"));
+    }
+    let packed = header.laz_vlr().map(|record| record.items_size()).ok().filter(|_| format.is_compressed);
+    if packed.is_some_and(|bytes| bytes != u64::from(format.len())) {
+        return Err(format!("points of {} bytes, packed as others of {packed:?}", format.len()));
     }
     let transforms = header.transforms();
     // Coordinates are whole numbers of 32 bits, scaled and shifted.

@@ -94,12 +94,9 @@ fn unit(list: &str) -> Option<WktUnit> {
     let of = |list: &str| {
         let found = parts(list, &UNITS).next()?;
         let name = found.split('"').nth(1)?.to_owned();
-        let metres = found.rsplit('"').next()?.trim_start_matches([',', ' ']).split([',', ']']).next()?;
         // The code of a unit may follow its size.
-        let metres = metres.trim().parse().ok().or_else(|| {
-            let after_name = found.split('"').nth(2)?.trim_start_matches([',', ' ']);
-            after_name.split([',', ']']).next()?.trim().parse().ok()
-        })?;
+        let after_name = found.split('"').nth(2)?.trim_start_matches([',', ' ']);
+        let metres = after_name.split([',', ']']).next()?.trim().parse().ok()?;
         Some(WktUnit { name, metres })
     };
     of(list).or_else(|| parts(list, &["AXIS["]).find_map(of))

@@ -87,7 +87,8 @@ fn few_observations_say_nothing() {
     r.track_starts = [0, 4].into_iter().chain([4; 59]).collect();
     r.track_elements.truncate(4);
     check(Path::new("sfm"), &mut r).unwrap();
-    assert!(r.warnings.is_empty());
+    assert!(r.warnings.iter().all(|w| w.kind == WarningKind::BlindCameras));
+    assert_eq!(r.sight, Sight::Believed);
 }
 
 #[test]

@@ -124,7 +124,7 @@ pub mod types {
 
 /// Single steps, for programs that put their own together: superpixels of chosen images, parts whose places are known, reports as text.
 pub mod steps {
-    pub use crate::export::{CityCounts, InputSummary, SfmCounts, alignment_report, merge_report};
+    pub use crate::export::{CityCounts, InputSummary, SfmCounts, alignment_report, merge_report, start_report};
     pub use crate::imagery::{LabelMap, Labels, cut_superpixels, lift_superpixels_of};
     pub use crate::merging::{JoinOptions, PairSources, Part, join};
 }

@@ -98,7 +98,7 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     if !matches!(no_reconstruction, ReconstructionError::NotAReconstruction { .. }) {
         return Err(no_reconstruction.into());
     }
-    let no_city = match read_city_contents(&[path.to_owned()]) {
+    let no_city = match read_city_contents(&[path.to_owned()], &CityOptions::default()) {
         Ok(contents) => return Ok(Inspection::of_city(path, &contents)),
         // As above.
         Err(error) if !matches!(error, CityError::OtherFormat { .. }) => return Err(error.into()),
@@ -124,7 +124,7 @@ fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
     if !matches!(no_model, ReconstructionError::NotAReconstruction { .. }) {
         return Err(no_model.into());
     }
-    if let Ok(contents) = read_city_contents(&[path.to_owned()]) {
+    if let Ok(contents) = read_city_contents(&[path.to_owned()], &CityOptions::default()) {
         return Ok(Inspection::of_city(path, &contents));
     }
     let photographs = photographs_in(path).map_or(0, |found| found.len());

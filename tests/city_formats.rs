@@ -84,7 +84,7 @@ fn a_file_of_points_alone_is_no_city() {
     let error = read_city(&own("geometry_instance.city.json"), &[], &CityOptions::default()).unwrap_err();
     assert!(matches!(error, CityError::NoFaces { .. }), "{error}");
     assert!(error.to_string().contains("2 points and lines, passed over; first: object fixture"), "{error}");
-    let contents = read_city_contents(&[own("geometry_instance.city.json")]).unwrap();
+    let contents = read_city_contents(&[own("geometry_instance.city.json")], &CityOptions::default()).unwrap();
     assert_eq!(
         (contents[0].1.format.as_str(), contents[0].1.objects, contents[0].1.polygons.len()),
         ("CityJSON 2.0", 1, 0)

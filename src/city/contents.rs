@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Crs, Lod, SurfaceKind};
-use crate::format::surfaces::SurfaceFile;
+use crate::format::surfaces::{ObjectRecord, SurfaceFile};
 
 /// What a city file holds, before levels of detail are chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,11 +57,12 @@ impl KindCounts {
 
 impl CityContents {
     pub(super) fn of(file: &SurfaceFile) -> CityContents {
-        let parts = file.objects.iter().filter(|object| object.parent.is_some()).count();
+        // Rooms, installations and the like belong to an object as well, and are no parts of a building.
+        let is_part = |object: &&ObjectRecord| object.parent.is_some() && object.class.ends_with("Part");
         let mut contents = CityContents {
             format: file.format.clone(),
-            objects: file.objects.len() - parts,
-            parts,
+            objects: file.objects.iter().filter(|object| object.parent.is_none()).count(),
+            parts: file.objects.iter().filter(is_part).count(),
             crs: file.crs.as_deref().map(Crs::understood),
             ..CityContents::default()
         };

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::format::SurfaceError;
 use crate::format::cityjson::CityJsonError;
 use crate::format::escaped;
 use crate::format::gltf::GltfError;
@@ -19,6 +20,8 @@ pub enum CityError {
     Gltf { path: PathBuf, error: Box<GltfError> },
     #[error("{} ({})", escaped(&error.to_string()), escaped(&cityjson_place(path, error)))]
     CityJson { path: PathBuf, error: Box<CityJsonError> },
+    #[error("{error} ({})", error.place_in(path))]
+    Surfaces { path: PathBuf, error: Box<SurfaceError> },
     #[error("{found}, expected a city model ({}); {remedy} ({})", FORMATS, path.display())]
     OtherFormat { path: PathBuf, found: &'static str, remedy: &'static str },
     #[error("the folder has no city model in it, {found}; expected files of {} ({})", FORMATS, path.display())]
@@ -53,7 +56,8 @@ pub enum CityError {
 }
 
 /// What is read.
-pub(super) const FORMATS: &str = "OBJ, glTF, GLB or CityJSON";
+pub(super) const FORMATS: &str =
+    "CityJSON, CityGML, OBJ, glTF, GLB, 3D Tiles, STL, PLY with faces, Shapefile or GeoPackage";
 
 fn place([x, y, z]: &[f64; 3]) -> String {
     format!("({x}, {y}, {z})")

@@ -15,7 +15,8 @@ pub(super) struct CityFiles {
 }
 
 /// Endings of files that are looked into; what else lies in a folder (textures, materials, notes) is passed over unread.
-const ENDINGS: [&str; 8] = ["obj", "gltf", "glb", "json", "jsonl", "cityjson", "gml", "xml"];
+const ENDINGS: [&str; 14] =
+    ["obj", "gltf", "glb", "json", "jsonl", "cityjson", "gml", "xml", "b3dm", "cmpt", "stl", "ply", "shp", "gpkg"];
 
 impl CityFiles {
     /// A file as it is, a folder as the city models in it. Folders within are not entered.

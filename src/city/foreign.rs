@@ -17,7 +17,7 @@ const fn foreign(begins: &'static [u8], found: &'static str, remedy: &'static st
 }
 
 /// In the order in which they are tried: longer beginnings before shorter ones that they begin with.
-const TABLE: [Foreign; 33] = [
+const TABLE: [Foreign; 29] = [
     // Before UTF-16, whose mark it begins with.
     foreign(
         b"\xFF\xFE\xFF\x0ES\0k\0e\0t\0c\0h\0U\0p\0",
@@ -54,12 +54,8 @@ const TABLE: [Foreign; 33] = [
     foreign(b"MM\0*", "this is a TIFF picture", NO_CITY),
     foreign(b"LASF", "this is a LAS cloud", CLOUD),
     foreign(b"ASTM-E57", "this is an E57 cloud", CLOUD),
-    foreign(b"\x00\x00\x27\x0A", "this is a Shapefile", "convert it to CityJSON or CityGML"),
-    foreign(b"SQLite format 3\0", "this is a GeoPackage or another database", "convert it to CityJSON or CityGML"),
+    foreign(b"SQLite format 3\0", "this is a database that is no GeoPackage", "get the city as CityJSON or CityGML"),
     foreign(b"fcb\x01", "this is FlatCityBuf", "convert it to CityJSON (fcb deser)"),
-    foreign(b"b3dm", "this is a tile of 3D Tiles", "convert it to glTF"),
-    foreign(b"i3dm", "this is a tile of 3D Tiles", "convert it to glTF"),
-    foreign(b"cmpt", "this is a tile of 3D Tiles", "convert it to glTF"),
 ];
 
 /// What a file is instead of a city model, and what to do about it.
@@ -76,10 +72,6 @@ fn by_structure(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     // The main chunk 0x4D4D holds the whole file.
     if bytes.starts_with(b"MM") && number(2) == Some(length) {
         return Some(("this is a 3DS file", EXPORT));
-    }
-    // Eighty bytes of remarks, then fifty bytes a triangle.
-    if number(80).is_some_and(|triangles| triangles > 0 && 84 + 50 * triangles == length) {
-        return Some(("this is an STL file", "convert it to OBJ"));
     }
     let text = &bytes[..bytes.len().min(LOOKED_AT)];
     let mut lines = text.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);

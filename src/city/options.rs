@@ -1,6 +1,7 @@
 //! How city files are to be taken.
 
 use super::levels::CityLod;
+use crate::format::footprints::FootprintFields;
 
 /// How to take city files.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +17,8 @@ pub struct CityOptions {
     pub origin: [f64; 3],
     /// Reference system of files that do not say theirs, such as `EPSG:25832+7837`.
     pub crs: Option<String>,
+    /// The attributes that make houses of footprints (Shapefile, GeoPackage).
+    pub footprints: FootprintFields,
 }
 
 impl CityOptions {
@@ -34,6 +37,18 @@ impl CityOptions {
     /// Metres.
     pub fn with_origin(self, origin: [f64; 3]) -> CityOptions {
         CityOptions { origin, ..self }
+    }
+
+    /// The attribute with the heights of houses above their base.
+    pub fn with_height_field(self, name: impl Into<String>) -> CityOptions {
+        let footprints = FootprintFields { height: Some(name.into()), ..self.footprints };
+        CityOptions { footprints, ..self }
+    }
+
+    /// The attribute with the heights of their bases; 0 where none is named.
+    pub fn with_base_field(self, name: impl Into<String>) -> CityOptions {
+        let footprints = FootprintFields { base: Some(name.into()), ..self.footprints };
+        CityOptions { footprints, ..self }
     }
 
     pub fn with_crs(self, crs: impl Into<String>) -> CityOptions {

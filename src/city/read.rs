@@ -13,10 +13,15 @@ use super::units::guess;
 use super::upright::odd_up;
 use super::warning::{CityDefect, CityPlace, CityWarning};
 use super::{CityContents, CityError, CityModel, CityOptions, CityRole, CityUnit, CityUp};
+use crate::format::SurfaceError;
+use crate::format::citygml::read_citygml;
 use crate::format::cityjson::read_cityjson;
+use crate::format::footprints::{FootprintFields, read_geopackage, read_shapefile};
 use crate::format::gltf::{GltfFile, read_gltf};
+use crate::format::meshes::{read_ply_mesh, read_stl};
 use crate::format::obj::{ObjFile, read_obj};
 use crate::format::surfaces::SurfaceFile;
+use crate::format::tileset::{TilesetFile, read_tile, read_tileset};
 
 /// Reads CITY (a file, or a folder of tiles) and further meshes (terrain) into one model with one common origin.
 pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Result<CityModel, CityError> {
@@ -32,7 +37,7 @@ pub fn read_city_files(city: &[PathBuf], terrain: &[PathBuf], options: &CityOpti
             let before = parsed.len();
             let mut files = CityFiles::at(path)?;
             for path in std::mem::take(&mut files.paths) {
-                parsed.extend(files.taken(&path, Parsed::read(&path, role))?);
+                parsed.extend(files.taken(&path, Parsed::read(&path, role, options))?);
             }
             warnings.extend(files.rest(parsed.len() - before)?);
         }
@@ -42,13 +47,13 @@ pub fn read_city_files(city: &[PathBuf], terrain: &[PathBuf], options: &CityOpti
 }
 
 /// What each file of a city holds, by its path, whether or not anything in it can be aligned with.
-pub fn read_city_contents(city: &[PathBuf]) -> Result<Vec<(PathBuf, CityContents)>, CityError> {
+pub fn read_city_contents(city: &[PathBuf], options: &CityOptions) -> Result<Vec<(PathBuf, CityContents)>, CityError> {
     let mut contents = Vec::new();
     for path in city {
         let before = contents.len();
         let mut files = CityFiles::at(path)?;
         for path in std::mem::take(&mut files.paths) {
-            let parsed = files.taken(&path, Parsed::read(&path, CityRole::City))?;
+            let parsed = files.taken(&path, Parsed::read(&path, CityRole::City, options))?;
             contents.extend(parsed.map(|parsed| (parsed.path.clone(), parsed.contents())));
         }
         files.rest(contents.len() - before)?;
@@ -92,11 +97,39 @@ enum Content {
     Surfaces(SurfaceFile),
 }
 
+/// The formats whose readers speak of surfaces and fail alike.
+fn read_surfaces(
+    format: Format,
+    bytes: &[u8],
+    path: &Path,
+    footprints: &FootprintFields,
+) -> Result<SurfaceFile, SurfaceError> {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let of_tiles = |tiles: TilesetFile| {
+        let crs = tiles.tangent().map(|[latitude, longitude]| {
+            format!(
+                "east, north, up at {latitude:.7}, {longitude:.7} (WGS 84), set upright from earth-centred coordinates"
+            )
+        });
+        SurfaceFile { step: Some(tiles.spacing_m), crs, ..tiles.surfaces }
+    };
+    match format {
+        Format::Tileset => read_tileset(path).map(of_tiles),
+        Format::Tile => read_tile(bytes, path).map(of_tiles),
+        Format::Shapefile => read_shapefile(path, footprints),
+        Format::GeoPackage => read_geopackage(path, footprints),
+        Format::Stl => read_stl(bytes, &name),
+        Format::PlyMesh => read_ply_mesh(bytes, &name),
+        Format::CityGml | Format::CityJson | Format::Gltf | Format::Obj => read_citygml(bytes),
+    }
+}
+
 impl Parsed {
-    fn read(path: &Path, role: CityRole) -> Result<Parsed, CityError> {
+    fn read(path: &Path, role: CityRole, options: &CityOptions) -> Result<Parsed, CityError> {
         let bytes = open(path)?;
         let path = path.to_owned();
-        let content = match recognise(&bytes, &path)? {
+        let format = recognise(&bytes, &path)?;
+        let content = match format {
             Format::Gltf => {
                 let folder = path.parent().unwrap_or(Path::new(""));
                 let file = read_gltf(&bytes, folder);
@@ -109,6 +142,12 @@ impl Parsed {
             }
             Format::Obj => {
                 Content::Obj(read_obj(&bytes).map_err(|error| CityError::Obj { path: path.clone(), error })?)
+            }
+            _ => {
+                let file = read_surfaces(format, &bytes, &path, &options.footprints);
+                Content::Surfaces(
+                    file.map_err(|error| CityError::Surfaces { path: path.clone(), error: Box::new(error) })?,
+                )
             }
         };
         Ok(Parsed { path, role, content })

@@ -7,15 +7,28 @@ use serde::de::IgnoredAny;
 
 use super::CityError;
 use super::foreign::foreign_format;
+use crate::format::citygml::is_citygml;
+use crate::format::footprints::{is_geopackage, is_shapefile};
 use crate::format::gltf::is_glb;
+use crate::format::meshes::{is_ply_mesh, is_stl};
+use crate::format::tileset::is_tile;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Obj,
     /// One city, or a sequence of features.
     CityJson,
+    CityGml,
     /// JSON or GLB; the reader tells them apart.
     Gltf,
+    /// The root of a tree of tiles.
+    Tileset,
+    /// One tile of 3D Tiles by itself.
+    Tile,
+    Shapefile,
+    GeoPackage,
+    Stl,
+    PlyMesh,
 }
 
 /// Bytes looked at; an OBJ file says what it is within its first lines, after whatever remarks.
@@ -30,8 +43,17 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
     if bytes.is_empty() {
         return other(("the file is empty", "write it again"));
     }
-    if is_glb(bytes) {
-        return Ok(Format::Gltf);
+    let by_mark: [(fn(&[u8]) -> bool, Format); 7] = [
+        (is_glb, Format::Gltf),
+        (is_citygml, Format::CityGml),
+        (is_tile, Format::Tile),
+        (is_shapefile, Format::Shapefile),
+        (is_geopackage, Format::GeoPackage),
+        (is_stl, Format::Stl),
+        (is_ply_mesh, Format::PlyMesh),
+    ];
+    if let Some((_, format)) = by_mark.into_iter().find(|(is, _)| is(bytes)) {
+        return Ok(format);
     }
     if let Some(foreign) = foreign_format(bytes) {
         return other(foreign);
@@ -42,8 +64,9 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
     match text {
         _ if text.starts_with('{') => return json_format(bytes, text, path).or_else(other),
         _ if text.starts_with('[') => return other(("this JSON is no city model", converts)),
-        _ if text.starts_with("ply") => return other(("this is a PLY file", converts)),
-        _ if text.starts_with("solid") => return other(("this is an STL file", converts)),
+        _ if text.starts_with("ply") => {
+            return other(("this is a PLY cloud without faces", "a cloud goes in the place of the reconstruction"));
+        }
         _ if text.starts_with('<') => return other(xml_format(text)),
         _ => {}
     }
@@ -92,7 +115,7 @@ fn json_format(bytes: &[u8], beginning: &str, path: &Path) -> Result<Format, (&'
     }
     match keys {
         Keys { city_objects: Some(_), .. } => Ok(Format::CityJson),
-        Keys { geometric_error: Some(_), .. } => Err(("this is a tileset of 3D Tiles", "convert it to glTF")),
+        Keys { geometric_error: Some(_), .. } => Ok(Format::Tileset),
         Keys { asset: Some(_), .. } => Ok(Format::Gltf),
         _ if is_named_gltf => Ok(Format::Gltf),
         _ => Err(("this JSON is no city model", "give the city model first")),
@@ -100,13 +123,12 @@ fn json_format(bytes: &[u8], beginning: &str, path: &Path) -> Result<Format, (&'
 }
 
 fn xml_format(text: &str) -> (&'static str, &'static str) {
-    const KINDS: [(&str, &str, &str); 6] = [
-        ("<COLLADA", "this is a COLLADA file", "convert it to OBJ or glTF"),
+    const KINDS: [(&str, &str, &str); 5] = [
+        ("<COLLADA", "this is a COLLADA file", "convert it to OBJ or glTF (assimp export IN.dae OUT.glb)"),
         ("<kml", "this is a KML file", "get the city as CityJSON or CityGML"),
         ("<svg", "this is an SVG drawing", "give the city model itself"),
         ("<!DOCTYPE html", "this is a web page", "download the file itself"),
         ("<html", "this is a web page", "download the file itself"),
-        ("CityModel", "this is CityGML", "convert it to CityJSON (citygml-tools to-cityjson)"),
     ];
     let known = KINDS.into_iter().find(|kind| text.contains(kind.0)).map(|kind| (kind.1, kind.2));
     known.unwrap_or(("this is XML of an unknown kind", "convert it"))

@@ -60,7 +60,7 @@ fn read(files: &CityFiles, args: &PlanesArgs, voice: &Voice) -> Result<CityModel
         Err(error @ CityError::NoFaces { .. }) if args.output.is_none() => error,
         city => return Ok(city?),
     };
-    let contents = read_city_contents(std::slice::from_ref(&files.city))?;
+    let contents = read_city_contents(std::slice::from_ref(&files.city), &files.options)?;
     if !contents.iter().any(|(_, contents)| contents.objects > 0 && contents.polygons.is_empty()) {
         return Err(error.into());
     }

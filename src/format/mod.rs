@@ -56,7 +56,7 @@ pub use problem::{
     IllFormed, LARGEST_PROBLEM_BYTES, Primitive, ProblemKind, StoredPairs, StoredPlane, StoredUp, read_problem,
 };
 pub use start::read_start;
-pub use surface_error::{Place, SurfaceError};
+pub use surface_error::SurfaceError;
 #[cfg(feature = "cli")]
 pub use text::text_from;
 pub use text::{LARGEST_TEXT_BYTES, read_text};

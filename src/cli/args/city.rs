@@ -7,6 +7,7 @@ use clap::ValueEnum;
 
 use super::numbers;
 use crate::city::{CityLod, CityOptions, CityUnit, CityUp, Lod};
+use crate::format::footprints::FootprintFields;
 
 #[derive(clap::Args, Clone, Debug, Default)]
 #[command(next_help_heading = "City options")]
@@ -30,6 +31,12 @@ pub struct CityArgs {
     /// Reference system of the city, where its files do not say theirs: EPSG:H or EPSG:H+V
     #[arg(long, value_name = "CRS")]
     pub crs: Option<String>,
+    /// Attribute of footprints (Shapefile, GeoPackage) with the heights of houses above their base, in metres
+    #[arg(long, value_name = "NAME")]
+    pub height_field: Option<String>,
+    /// Attribute of footprints with the heights of their bases, in metres [default: all at 0]
+    #[arg(long, value_name = "NAME")]
+    pub base_field: Option<String>,
 }
 
 impl CityArgs {
@@ -49,6 +56,7 @@ impl CityArgs {
         });
         options.origin = self.city_origin.map_or([0.0; 3], |origin| origin.0);
         options.crs = self.crs.clone();
+        options.footprints = FootprintFields { height: self.height_field.clone(), base: self.base_field.clone() };
         options
     }
 
@@ -61,6 +69,8 @@ impl CityArgs {
             (self.city_unit.is_some(), "--city-unit"),
             (self.city_origin.is_some(), "--city-origin"),
             (self.crs.is_some(), "--crs"),
+            (self.height_field.is_some(), "--height-field"),
+            (self.base_field.is_some(), "--base-field"),
         ];
         given.into_iter().find(|(is_given, _)| *is_given).map(|(_, option)| option)
     }

@@ -18,7 +18,6 @@ const DEEPEST_PART: usize = 64;
 #[derive(Debug)]
 pub(super) struct Link {
     pub href: Box<str>,
-    pub object: Option<u32>,
     pub kind: Option<SurfaceKind>,
     pub shell: Option<u32>,
     pub is_reversed: bool,
@@ -182,7 +181,7 @@ mod tests {
     }
 
     fn link(href: &str, shell: Option<u32>, is_reversed: bool) -> Link {
-        Link { href: href.into(), object: Some(0), kind: Some(SurfaceKind::Roof), shell, is_reversed }
+        Link { href: href.into(), kind: Some(SurfaceKind::Roof), shell, is_reversed }
     }
 
     #[test]

@@ -190,9 +190,9 @@ impl Scene {
     }
 
     fn link(&mut self, href: &str, context: Context) {
-        let Context { object, kind, shell, is_reversed, .. } = context;
+        let Context { kind, shell, is_reversed, .. } = context;
         if context.purpose == Purpose::Scene {
-            self.links.add(Link { href: href.into(), object, kind, shell, is_reversed });
+            self.links.add(Link { href: href.into(), kind, shell, is_reversed });
         } else {
             self.skip("references within implicit geometries", context);
         }

@@ -1,13 +1,11 @@
-//! Meshes without a scene, as scanners and modelling programs write them: PLY with faces, STL. COLLADA is recognised, and not read.
+//! Meshes without a scene, as scanners and modelling programs write them: PLY with faces, STL.
 //!
-//! Both are read here: the known crates take a binary STL whose name begins with `solid` for text, and a header's counts for true.
+//! Both are read here: a binary STL may begin with the word `solid`, too, and counts of a header are held against the bytes that are there.
 
-mod collada;
 mod ply_mesh;
 mod stl;
 #[cfg(test)]
 pub(in crate::format) mod tests;
 
-pub use collada::is_collada;
 pub use ply_mesh::{is_ply_mesh, read_ply_mesh};
 pub use stl::{is_stl, read_stl};

@@ -136,9 +136,3 @@ fn ply_that_lies_is_refused() {
     assert!(ply(b"ply\nformat ascii 1.0\n").unwrap_err().to_string().contains("no end_header"));
     assert!(!is_ply_mesh(b"solid"));
 }
-
-#[test]
-fn collada_is_known_by_its_root() {
-    assert!(is_collada(b"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\">"));
-    assert!(!is_collada(b"<CityModel/>") && !is_collada(b"COLLADA"));
-}

@@ -3,12 +3,12 @@
 use crate::format::citygml::is_citygml;
 use crate::format::footprints::{is_geopackage, is_shapefile, tests};
 use crate::format::gltf::is_glb;
-use crate::format::meshes::{self, is_collada, is_ply_mesh, is_stl};
+use crate::format::meshes::{self, is_ply_mesh, is_stl};
 use crate::format::tileset::{is_tile, is_tileset};
 
 type Recogniser = (&'static str, fn(&[u8]) -> bool);
 
-const RECOGNISERS: [Recogniser; 9] = [
+const RECOGNISERS: [Recogniser; 8] = [
     ("CityGML", is_citygml),
     ("Shapefile", is_shapefile),
     ("GeoPackage", is_geopackage),
@@ -16,7 +16,6 @@ const RECOGNISERS: [Recogniser; 9] = [
     ("tile", is_tile),
     ("STL", is_stl),
     ("PLY mesh", is_ply_mesh),
-    ("COLLADA", is_collada),
     ("GLB", is_glb),
 ];
 
@@ -36,7 +35,7 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
         ("STL", meshes::tests::binary_stl("solid", 2)),
         ("PLY mesh", text(meshes::tests::TEXT_PLY)),
         ("PLY mesh", meshes::tests::binary_ply(true)),
-        ("COLLADA", text("<?xml version='1.0'?><COLLADA/>")),
+        ("none", text("<?xml version='1.0'?><COLLADA/>")),
         ("GLB", text("glTF\u{2}\0\0\0")),
         ("none", text("{\"asset\": {\"version\": \"2.0\"}}")),
         ("none", text("{\"type\": \"CityJSON\"}")),

@@ -15,4 +15,5 @@ mod tree;
 
 pub use content::is_tile;
 pub use tiles::{TilesetFile, read_tile, read_tileset};
-pub use tree::is_tileset;
+#[cfg(test)]
+pub(in crate::format) use tree::is_tileset;

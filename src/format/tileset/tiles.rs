@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use nalgebra::{Matrix4, Point3};
+use nalgebra::{Matrix4, Point3, Vector3};
 
 use super::content::{Batched, Container, parts_of};
 use super::earth::local_from_ecef;
@@ -37,6 +37,15 @@ pub struct TilesetFile {
     pub local_from_ecef: Option<Similarity>,
     /// Distance of neighbouring numbers in the models: no finer than this are positions known, metres.
     pub spacing_m: f64,
+}
+
+impl TilesetFile {
+    /// Where the local plane touches the ellipsoid, latitude and longitude in degrees; `None` where the coordinates are not earth-centred.
+    pub fn tangent(&self) -> Option<[f64; 2]> {
+        // Up of the local frame is the ellipsoid's normal, whose angles are the geodetic latitude and longitude.
+        let up = self.local_from_ecef.as_ref()?.rotation.inverse() * Vector3::z();
+        Some([up.z.clamp(-1.0, 1.0).asin().to_degrees(), up.y.atan2(up.x).to_degrees()])
+    }
 }
 
 /// Reads `tileset.json` and all that it names.

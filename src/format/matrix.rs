@@ -12,9 +12,9 @@ const TOLERANCE: f64 = 1e-4;
 
 /// Whether a text begins like numbers rather than JSON of an object. JSON's own nested lists are taken for a matrix, too.
 pub(super) fn looks_like_matrix(text: &str) -> bool {
-    let first = text.trim_start_matches(|c: char| is_separator(c) || c == '\u{feff}').chars().next();
-    let is_number = first.is_some_and(|c| c.is_ascii_digit() || "+-.".contains(c));
-    is_number && numbers(text).len() > 1
+    let words = numbers(text);
+    let is_number = |word: &&str| word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    words.len() > 1 && words.first().is_some_and(is_number)
 }
 
 pub(super) fn parse_matrix(text: &str, path: &Path) -> Result<Similarity, PlacementError> {

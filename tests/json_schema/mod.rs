@@ -27,6 +27,7 @@ pub fn keeps(value: &Value, schema: &Value, root: &Value) -> bool {
         "minItems" => value.as_array().is_none_or(|items| items.len() as u64 >= want.as_u64().unwrap()),
         "maxItems" => value.as_array().is_none_or(|items| items.len() as u64 <= want.as_u64().unwrap()),
         "minimum" => value.as_f64().is_none_or(|number| number >= want.as_f64().unwrap()),
+        "exclusiveMaximum" => value.as_f64().is_none_or(|number| number < want.as_f64().unwrap()),
         "maximum" => value.as_f64().is_none_or(|number| number <= want.as_f64().unwrap()),
         "exclusiveMinimum" => value.as_f64().is_none_or(|number| number > want.as_f64().unwrap()),
         // The one pattern there is: a list of beginnings.

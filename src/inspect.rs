@@ -15,7 +15,9 @@ use crate::format::positions::{Frame, PositionsFile, photographs_in, read_positi
 use crate::geometry::{Point3, Vector3};
 use crate::limits::Limits;
 use crate::planes::up_of_cameras;
-use crate::reconstruction::{Reconstruction, ReconstructionError, read_reconstruction};
+use crate::reconstruction::{
+    Reconstruction, ReconstructionError, ReconstructionWarning, WarningKind, read_reconstruction,
+};
 
 /// What a path holds. Fields that make no sense for it are absent from the JSON.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -182,9 +184,12 @@ impl Inspection {
         let rotations: Vec<_> = sfm.images.iter().map(|image| image.cam_from_sfm_rotation).collect();
         let up = (!rotations.is_empty()).then(|| up_of_cameras(&rotations, &Limits::default())).unwrap_or_default();
         let (low, high) = extent(sfm.points.iter().map(|p| p.coords)).unzip();
+        // The file holds them, though no alignment sees them.
+        let is_noise = |warning: &&ReconstructionWarning| warning.kind == WarningKind::NoiseLeftOut;
+        let noise = sfm.warnings.iter().find(is_noise).map_or(0, |warning| warning.count);
         Inspection {
             images: Some(sfm.images.len()).filter(|_| has_images),
-            points: Some(sfm.points.len()),
+            points: Some(sfm.points.len() + noise),
             observations: Some(sfm.track_elements.len()).filter(|_| has_images),
             up_guess: up.first().map(|candidate| candidate.up.into()),
             low,

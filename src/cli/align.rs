@@ -81,7 +81,10 @@ impl Inputs {
         let sfm = read_reconstruction(&plan.sfm)?;
         voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
         let estimate = plan.place.estimate(&sfm, &city)?;
-        let distance_m = estimate.distance_to_city(&sfm.points, &city)?;
+        let distance_m = estimate.distance_to_city(&sfm.points, &city).inspect_err(|_| {
+            // A unit or an axis that is not what it was taken for leads a start away.
+            voice.warnings(&city.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
+        })?;
         voice.detail(&format!("start: {}; {distance_m:.1} m from the nearest facet", estimate.source));
         // A dry run does without what takes minutes.
         let superpixels = match plan.superpixels.as_ref().filter(|_| plan.output.is_some()) {

@@ -101,7 +101,7 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
         return Err(no_reconstruction.into());
     }
     let no_city = match read_city_contents(&[path.to_owned()], &CityOptions::default()) {
-        Ok(contents) => return Ok(Inspection::of_city(path, &contents)),
+        Ok(contents) => return Inspection::of_city(path, &contents),
         // As above.
         Err(error) if !matches!(error, CityError::OtherFormat { .. }) => return Err(error.into()),
         Err(error) => error,
@@ -127,7 +127,7 @@ fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
         return Err(no_model.into());
     }
     if let Ok(contents) = read_city_contents(&[path.to_owned()], &CityOptions::default()) {
-        return Ok(Inspection::of_city(path, &contents));
+        return Inspection::of_city(path, &contents);
     }
     let photographs = photographs_in(path).map_or(0, |found| found.len());
     if photographs == 0 {
@@ -149,25 +149,31 @@ impl Inspection {
     }
 
     /// What the files of a city hold, and the model that is made of them where one can be made.
-    fn of_city(path: &Path, contents: &[(PathBuf, CityContents)]) -> Inspection {
+    fn of_city(path: &Path, contents: &[(PathBuf, CityContents)]) -> Result<Inspection, Error> {
         let format = contents.first().map_or("", |(_, first)| first.format.as_str());
         let mut found = Inspection::of(path, InputKind::City, format);
         let sum = |of: fn(&CityContents) -> usize| Some(contents.iter().map(|(_, file)| of(file)).sum());
         found.objects = sum(|file| file.objects);
         found.parts = sum(|file| file.parts);
         found.holes = sum(|file| file.holes);
-        for (lod, counts) in contents.iter().flat_map(|(_, file)| &file.polygons) {
+        let levels = contents.iter().flat_map(|(_, file)| &file.polygons);
+        // Formats without levels and kinds have nothing to tell here.
+        for (lod, counts) in levels.filter(|(lod, counts)| lod.is_some() || counts.total() > counts.unsaid) {
             let level = found.polygons.entry(lod.map_or("unsaid".to_owned(), |lod| lod.to_string())).or_default();
             for (kind, count) in counts.named().filter(|(_, count)| *count > 0) {
                 *level.entry(kind.to_owned()).or_default() += count;
             }
         }
         found.crs = contents.iter().find_map(|(_, file)| file.crs.as_ref()).map(InspectedCrs::of);
+        let has_objects = found.objects.is_some_and(|objects| objects > 0);
         match read_city(path, &[], &CityOptions::default()) {
             Ok(city) => found.add_model(&city),
-            Err(error) => found.warnings.push(format!("nothing to align with: {error}")),
+            Err(CityError::NoFaces { .. }) | Err(CityError::OnlyFootprints { .. }) if has_objects => {
+                found.warnings.push("nothing in it can be aligned with: it has no walls and roofs".to_owned());
+            }
+            Err(error) => return Err(error.into()),
         }
-        found
+        Ok(found)
     }
 
     fn add_model(&mut self, city: &CityModel) {
@@ -310,7 +316,7 @@ mod tests {
             ("a.obj", "v 0 0 0\n", "no faces"),
             ("a.ply", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nend_header\n", "a.ply"),
             ("a.txt", "hello there\n", "name"),
-            ("a.gml", "<CityModel/>", "XML"),
+            ("a.gml", "<kml/>", "KML"),
         ] {
             let message = told(name, content).unwrap_err();
             assert!(message.contains(says) && message.contains(name), "{message}");

@@ -125,11 +125,11 @@ fn sources_that_place_nothing_are_refused_with_what_to_do() {
     let geo = data("geo.txt");
     refused(&room, &["--positions", &geo], &["geo.txt holds longitudes and latitudes", "--crs EPSG:"]);
     refused(&room, &["--positions", &geo, "--crs", "EPSG:25832"], &["km from the city's nearest facet", "--crs"]);
-    refused(&room, &["--positions", &geo, "--crs", "RD"], &["--crs", "EPSG:28992"]);
+    refused(&room, &["--positions", &geo, "--crs", "RD"], &["--crs", "EPSG:<code>"]);
     refused(&room, &["--positions", "none.txt"], &["cannot read the positions", "none.txt"]);
     refused(&room, &["--positions", "city.obj"], &["--positions is a city model"]);
     refused(&room, &["--points", &geo], &["line 2"]);
-    refused(&room, &["--photos", &data("exif")], &["--positions", "--crs"]);
+    refused(&room, &["--photos", &data("exif")], &["exif", "--crs EPSG:<code>"]);
     refused(&room, &[], &["--positions", "--points", "--start"]);
     let words = std::fs::read_to_string(data("name_x_y_z.txt")).unwrap();
     let swapped = words.lines().map(|line| {

@@ -232,13 +232,13 @@ mod tests {
             (
                 City,
                 "sfm",
-                "CITY is a COLMAP model, expected a city model (OBJ, glTF, GLB or CityJSON); the city comes first, the reconstruction second",
+                "CITY is a COLMAP model, expected a city model (CityJSON, CityGML, OBJ, glTF, 3D Tiles, ...); the city comes first, the reconstruction second",
             ),
             (City, "work", "CITY is a COLMAP model"),
             (
                 City,
                 "start.json",
-                "CITY is a start, expected a city model (OBJ, glTF, GLB or CityJSON); give it with --start: start.json",
+                "CITY is a start, expected a city model (CityJSON, CityGML, OBJ, glTF, 3D Tiles, ...); give it with --start: start.json",
             ),
             (City, "photos", "CITY is a folder of images"),
             (Sfm, "city.obj", "SFM is a city model, expected"),

@@ -8,7 +8,11 @@ pub fn keeps(value: &Value, schema: &Value, root: &Value) -> bool {
         "$schema" | "$defs" | "title" | "description" => true,
         "const" => value == want,
         "$ref" => keeps(value, root.pointer(&want.as_str().unwrap()[1..]).expect("a reference leads somewhere"), root),
-        "type" => has_type(value, want.as_str().unwrap()),
+        // One name, or several of which one must fit.
+        "type" => match want.as_array() {
+            Some(names) => names.iter().any(|name| has_type(value, name.as_str().unwrap())),
+            None => has_type(value, want.as_str().unwrap()),
+        },
         "enum" => want.as_array().unwrap().contains(value),
         "allOf" => want.as_array().unwrap().iter().all(|part| keeps(value, part, root)),
         "anyOf" => want.as_array().unwrap().iter().any(|part| keeps(value, part, root)),

@@ -21,7 +21,8 @@ const IMAGES_LOOKED_AT: usize = 64;
 
 /// Files of a folder that are looked into for a city, and their endings.
 const CITIES_LOOKED_AT: usize = 8;
-const CITY_ENDINGS: [&str; 6] = ["obj", "gltf", "glb", "json", "jsonl", "cityjson"];
+const CITY_ENDINGS: [&str; 12] =
+    ["obj", "gltf", "glb", "json", "jsonl", "cityjson", "gml", "xml", "b3dm", "stl", "shp", "gpkg"];
 
 /// What the JSON of a city has near its beginning: glTF, CityJSON.
 const CITY_KEYS: [&str; 3] = ["\"asset\"", "\"CityJSON", "\"CityObjects\""];
@@ -67,13 +68,19 @@ impl Glance {
         let text = String::from_utf8_lossy(&start);
         let text = text.trim_start_matches('\u{feff}').trim_start();
         let is_json = text.starts_with('{');
-        let json = if is_json { JsonKind::of(text).or_else(|| kind_of_long(text)) } else { None };
+        // A city's JSON has a `transform` as well as an alignment.
+        let is_city_json = is_json && CITY_KEYS.iter().any(|key| text.contains(key));
+        let json = match is_json {
+            true if is_city_json => JsonKind::by_schema(text),
+            true => JsonKind::of(text).or_else(|| kind_of_long(text)),
+            false => None,
+        };
         let (model, other_sfm) = sfm_at(path);
         let is_named = |endings: &[&str]| {
             path.extension().is_some_and(|is| endings.iter().any(|ending| is.eq_ignore_ascii_case(ending)))
         };
         let is_city = is_glb(&start)
-            || (is_json && json.is_none() && (is_named(&["gltf"]) || CITY_KEYS.iter().any(|key| text.contains(key))))
+            || (is_json && json.is_none() && (is_city_json || is_named(&["gltf"])))
             || (!is_json && other_sfm.is_none() && (is_named(&["obj"]) || text.lines().any(is_obj_vertex)));
         let model = model.filter(|_| !is_city);
         Glance { is_city, json, other_sfm, model, ..Glance::default() }
@@ -215,7 +222,7 @@ fn words_of(source: &SfmSource) -> &'static str {
 
 fn expected(role: Role) -> &'static str {
     match role {
-        Role::City | Role::Terrain | Role::CityOption => "a city model (OBJ, glTF, GLB or CityJSON)",
+        Role::City | Role::Terrain | Role::CityOption => "a city model (CityJSON, CityGML, OBJ, glTF, 3D Tiles, ...)",
         Role::Sfm | Role::Part => "a reconstruction (a COLMAP folder, a cloud, or what other tools wrote)",
         Role::Start => "a start (JSON), or an alignment.json",
         Role::Alignment => "an alignment.json",

@@ -188,7 +188,7 @@ impl Inspection {
     pub fn of_reconstruction(path: &Path, sfm: &Reconstruction) -> Inspection {
         let has_images = !sfm.images.is_empty();
         let rotations: Vec<_> = sfm.images.iter().map(|image| image.cam_from_sfm_rotation).collect();
-        let up = (!rotations.is_empty()).then(|| up_of_cameras(&rotations, &Limits::default())).unwrap_or_default();
+        let up = if has_images { up_of_cameras(&rotations, &Limits::default()) } else { Vec::new() };
         let (low, high) = extent(sfm.points.iter().map(|p| p.coords)).unzip();
         // The file holds them, though no alignment sees them.
         let is_noise = |warning: &&ReconstructionWarning| warning.kind == WarningKind::NoiseLeftOut;

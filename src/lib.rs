@@ -101,11 +101,12 @@ pub mod types {
         Lod, ObjectId, SurfaceKind,
     };
     pub use crate::export::{ExportError, OutputError, ReportError};
-    pub use crate::format::PlacementError;
     pub use crate::format::cityjson::{CityJsonError, CityJsonProblem};
     pub use crate::format::control::{ControlFile, PointRole, PointSight, StoredPoint};
+    pub use crate::format::footprints::FootprintFields;
     pub use crate::format::ply::{CloudField, FieldKind};
     pub use crate::format::positions::{Frame, PositionsError, PositionsFile, StoredPosition};
+    pub use crate::format::{PlacementError, SurfaceError};
     pub use crate::geometry::{Camera, CameraModel, StartError};
     pub use crate::georeference::{ControlPoint, ControlUse, GeoreferenceError};
     pub use crate::imagery::{ImageryError, ImageryWarning, Superpixel};

@@ -202,7 +202,8 @@ fn what_is_no_reconstruction_is_told_from_what_is_not_there() {
 #[test]
 fn what_is_not_a_number_or_not_there_is_left_out_and_counted() {
     // Kind of file, name, warnings with their counts, images and points that are left.
-    let expected: [(&str, &[(WarningKind, usize)], usize, usize); 9] = [
+    type Odd = (&'static str, &'static [(WarningKind, usize)], usize, usize);
+    let expected: [Odd; 9] = [
         (
             "binary/odd_image_position_nan",
             &[(WarningKind::ImagesWithoutPose, 1), (WarningKind::TracksOfMissingImages, 2)],

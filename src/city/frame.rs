@@ -89,9 +89,9 @@ impl Extent {
         let mut extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
         for file in files {
             for position in file.corners.iter().map(|&at| file.positions[at as usize]) {
-                for axis in 0..3 {
-                    extent.low[axis] = extent.low[axis].min(position[axis]);
-                    extent.high[axis] = extent.high[axis].max(position[axis]);
+                for (axis, value) in position.into_iter().enumerate() {
+                    extent.low[axis] = extent.low[axis].min(value);
+                    extent.high[axis] = extent.high[axis].max(value);
                 }
             }
         }

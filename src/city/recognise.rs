@@ -31,6 +31,9 @@ pub(super) enum Format {
     PlyMesh,
 }
 
+/// Whether bytes are of a format.
+type Recogniser = fn(&[u8]) -> bool;
+
 /// Bytes looked at; an OBJ file says what it is within its first lines, after whatever remarks.
 const LOOKED_AT: usize = 1 << 16;
 
@@ -43,7 +46,7 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
     if bytes.is_empty() {
         return other(("the file is empty", "write it again"));
     }
-    let by_mark: [(fn(&[u8]) -> bool, Format); 7] = [
+    let by_mark: [(Recogniser, Format); 7] = [
         (is_glb, Format::Gltf),
         (is_citygml, Format::CityGml),
         (is_tile, Format::Tile),

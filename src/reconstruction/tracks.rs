@@ -111,8 +111,8 @@ fn confirmed(
     let mut denied = 0;
     let mut example = None;
     for (point, ends) in points.track_starts.windows(2).enumerate() {
-        for element in ends[0] as usize..ends[1] as usize {
-            let (image, keypoint) = elements[element];
+        let (first, end) = (ends[0] as usize, ends[1] as usize);
+        for (element, &(image, keypoint)) in (first..end).zip(&elements[first..end]) {
             let Some(seen_by) = images.get(image.0 as usize) else {
                 let id = points.track_elements[element].0;
                 check.warn(WarningKind::TracksOfMissingImages, 1, || {

@@ -41,23 +41,25 @@ pub struct CityArgs {
 
 impl CityArgs {
     pub fn options(&self) -> CityOptions {
-        let mut options = CityOptions::default();
-        options.up = self.city_up.map(|up| match up {
+        let up = |up| match up {
             CityUpArg::Z => CityUp::Z,
             CityUpArg::Y => CityUp::Y,
-        });
-        options.lod = self.lod.map_or(CityLod::Highest, |lod| CityLod::UpTo(lod.0));
-        options.unit = self.city_unit.map(|unit| match unit {
+        };
+        let unit = |unit| match unit {
             CityUnitArg::M => CityUnit::Metre,
             CityUnitArg::Cm => CityUnit::Centimetre,
             CityUnitArg::Mm => CityUnit::Millimetre,
             CityUnitArg::Ft => CityUnit::Foot,
             CityUnitArg::UsFt => CityUnit::UsFoot,
-        });
-        options.origin = self.city_origin.map_or([0.0; 3], |origin| origin.0);
-        options.crs = self.crs.clone();
-        options.footprints = FootprintFields { height: self.height_field.clone(), base: self.base_field.clone() };
-        options
+        };
+        CityOptions {
+            up: self.city_up.map(up),
+            lod: self.lod.map_or(CityLod::Highest, |lod| CityLod::UpTo(lod.0)),
+            unit: self.city_unit.map(unit),
+            origin: self.city_origin.map_or([0.0; 3], |origin| origin.0),
+            crs: self.crs.clone(),
+            footprints: FootprintFields { height: self.height_field.clone(), base: self.base_field.clone() },
+        }
     }
 
     /// The first option that belongs to a city, where one is given.

@@ -90,8 +90,8 @@ impl Glance {
         let report = Some(path.join("alignment.json")).filter(|report| report.is_file());
         let (model, other_sfm) = sfm_at(path);
         let mut found = Glance { report, model, other_sfm, ..Glance::default() };
-        let is_part = |sub: &&str| [1, 2].contains(&missing_files(&path.join(sub)).len());
-        if found.model.is_none() && found.other_sfm.is_none() && MODEL_SUBFOLDERS.iter().any(|sub| is_part(&sub)) {
+        let is_part = |sub: &str| [1, 2].contains(&missing_files(&path.join(sub)).len());
+        if found.model.is_none() && found.other_sfm.is_none() && MODEL_SUBFOLDERS.iter().any(|sub| is_part(sub)) {
             found.model = Some(Model::InPart);
         }
         let (mut looked_at, mut cities_looked_at) = (0, 0);

@@ -252,13 +252,13 @@ impl Scene {
                 "{count} numbers do not make positions of {dimension}; expected x y z of every corner"
             ));
         }
-        let positions = self.numbers.chunks_exact(3).map(|position| [position[0], position[1], position[2]]);
+        let mut positions = self.numbers.chunks_exact(3).map(|position| [position[0], position[1], position[2]]);
         if dimension != 3 {
             self.polygon.pass_over("polygons without heights (in two dimensions)");
         } else if !is_point {
             self.polygon.add(positions);
         } else if let Some(implicit) = &mut self.implicit {
-            implicit.reference = positions.last();
+            implicit.reference = positions.next_back();
         }
         Ok(())
     }

@@ -23,7 +23,7 @@ fn read(text: &str) -> SurfaceFile {
 }
 
 fn refused(text: &str) -> SurfaceError {
-    read_citygml(text.as_bytes()).err().expect("an error")
+    read_citygml(text.as_bytes()).expect_err("an error")
 }
 
 fn polygon(id: &str, positions: &str) -> String {

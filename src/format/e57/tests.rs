@@ -2,8 +2,10 @@ use e57::{E57Writer, Quaternion, Record, RecordDataType, RecordName, RecordValue
 
 use super::*;
 
-/// A file of scans: the points of each, with a colour and an intensity where it has them, and its pose.
-fn file(scans: &[(&[[f64; 3]], bool, Option<Transform>)]) -> tempfile::NamedTempFile {
+/// The points of a scan, whether it has a colour and an intensity, and its pose.
+type Scan<'a> = (&'a [[f64; 3]], bool, Option<Transform>);
+
+fn file(scans: &[Scan]) -> tempfile::NamedTempFile {
     let file = tempfile::NamedTempFile::new().unwrap();
     let mut writer = E57Writer::from_file(file.path(), "file").unwrap();
     for (number, (points, has_color, pose)) in scans.iter().enumerate() {

@@ -210,7 +210,7 @@ impl Header {
                 vertex.properties.iter().any(|property| property.name == **axis && property.list_of.is_none())
             })
         };
-        if !["x", "y", "z"].iter().all(|axis| is_given(&axis)) {
+        if !["x", "y", "z"].iter().all(is_given) {
             return Err(SurfaceError::whole("the PLY has no vertices with x, y and z; write it again"));
         }
         // No number of bytes would bound them.

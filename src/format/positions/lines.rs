@@ -67,7 +67,7 @@ fn words_of_name(words: &[&str]) -> usize {
     let has_ending = |word: &&str| {
         word.rsplit_once('.').is_some_and(|(_, ending)| ending.starts_with(|c: char| c.is_ascii_alphabetic()))
     };
-    words.iter().rposition(|word| has_ending(word)).map_or(1, |last| last + 1).min(words.len())
+    words.iter().rposition(has_ending).map_or(1, |last| last + 1).min(words.len())
 }
 
 pub(super) fn finite(word: &str) -> Result<f64, String> {

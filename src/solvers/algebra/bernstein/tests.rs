@@ -53,7 +53,7 @@ proptest! {
         prop_assume!(roots.iter().all(|r| (r.abs() - 1.0).abs() > 1e-2));
         let inside = roots.iter().filter(|r| r.abs() < 1.0).count() as u32;
         let changes = sign_changes(&Interval::whole(&c).bernstein);
-        prop_assert!(changes >= inside && (changes - inside) % 2 == 0, "{changes} {inside}");
+        prop_assert!(changes >= inside && (changes - inside).is_multiple_of(2), "{changes} {inside}");
     }
 }
 

@@ -16,7 +16,20 @@ const MIRROR_REMEDY: &str = "if the city is a mirror image of the place instead 
 
 impl fmt::Display for CityWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (one, many) = match self.defect {
+        if let Some(sentence) = sentence(&self.defect) {
+            return write!(f, "{sentence} ({})", self.example);
+        }
+        let (one, many) = self.counted();
+        write!(f, "{} {}", self.count, if self.count == 1 { one } else { many })?;
+        self.write_remedy(f)?;
+        write!(f, "; first: {}", self.example)
+    }
+}
+
+impl CityWarning {
+    /// What is counted, of one and of many.
+    fn counted(&self) -> (&'static str, &'static str) {
+        match self.defect {
             CityDefect::UnknownLines => ("line begins with an unknown word", "lines begin with an unknown word"),
             CityDefect::FreeForms => ("curve or surface has no polygons", "curves or surfaces have no polygons"),
             CityDefect::NoSurface => ("primitive is points or lines", "primitives are points or lines"),
@@ -60,11 +73,11 @@ impl fmt::Display for CityWarning {
             CityDefect::FarApart { .. } => ("file lies far from the city", "files lie far from the city"),
             // Told in a sentence of its own.
             _ => ("", ""),
-        };
-        if let Some(sentence) = sentence(&self.defect) {
-            return write!(f, "{sentence} ({})", self.example);
         }
-        write!(f, "{} {}", self.count, if self.count == 1 { one } else { many })?;
+    }
+
+    /// How much of it there is, and what was done about it.
+    fn write_remedy(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.defect {
             CityDefect::UnknownLines | CityDefect::FreeForms | CityDefect::NoSurface => write!(f, ", passed over")?,
             CityDefect::TooFewCorners
@@ -103,7 +116,7 @@ impl fmt::Display for CityWarning {
             }
             _ => {}
         }
-        write!(f, "; first: {}", self.example)
+        Ok(())
     }
 }
 

@@ -300,7 +300,7 @@ fn damaged_files_are_refused_with_a_place() {
         ("points.ply", "this is a PLY cloud without faces", "points.ply"),
         ("city.city.json", "the city has no faces", "city.city.json"),
         ("solid.stl", "the city has no faces", "solid.stl"),
-        ("city.gml", "this is CityGML", "city.gml"),
+        ("city.gml", "a CityModel outside the namespaces of CityGML", "city.gml"),
         ("utf16.obj", "this is UTF-16 text", "utf16.obj"),
         ("noise.bin", "unknown format", "noise.bin"),
         ("not there.obj", "cannot read the file", "not there.obj"),

@@ -126,11 +126,12 @@ fn json_format(bytes: &[u8], beginning: &str, path: &Path) -> Result<Format, (&'
 }
 
 fn xml_format(text: &str) -> (&'static str, &'static str) {
-    const KINDS: [(&str, &str, &str); 5] = [
+    const KINDS: [(&str, &str, &str); 6] = [
         ("<COLLADA", "this is a COLLADA file", "convert it to OBJ or glTF (assimp export IN.dae OUT.glb)"),
         ("<kml", "this is a KML file", "get the city as CityJSON or CityGML"),
         ("<svg", "this is an SVG drawing", "give the city model itself"),
         ("<!DOCTYPE html", "this is a web page", "download the file itself"),
+        ("CityModel", "this is a CityModel outside the namespaces of CityGML 1 to 3", "write it again as CityGML 2"),
         ("<html", "this is a web page", "download the file itself"),
     ];
     let known = KINDS.into_iter().find(|kind| text.contains(kind.0)).map(|kind| (kind.1, kind.2));

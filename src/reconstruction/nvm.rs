@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use super::picture_sizes::{middle, size_of_photograph, sizes_by_halves, warn_of_guess};
+use super::picture_sizes::{median_place, middle, size_of_photograph, sizes_by_halves, warn_of_guess};
 use super::posed::{Posed, PosedImage, PosedPoint, color, usable, warn};
 use super::transform::rotation_of;
 use super::{Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind};
@@ -28,7 +28,8 @@ pub(super) fn reconstruction(path: &Path, model: &NvmModel) -> Result<Reconstruc
         .flat_map(|(_, place)| place)
         .fold(0.0, |reach: f64, v| if v.is_finite() { reach.max(v.abs()) } else { reach });
     let all: Vec<[f64; 2]> = offsets.iter().flatten().copied().collect();
-    let offset = middle(&all).unwrap_or_default();
+    // Of each camera one, so that few cameras tell it as well.
+    let offset = median_place(&all).unwrap_or_default();
     let from_corner = offset[0].hypot(offset[1]) > MIDDLE_SHARE * reach;
     let sizes = sizes(path, model, &offsets, from_corner, &mut warnings);
     let mut posed = Posed::default();

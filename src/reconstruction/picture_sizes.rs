@@ -45,6 +45,11 @@ pub(super) fn middle(places: &[[f64; 2]]) -> Option<[f64; 2]> {
     if places.len() < FEWEST_OBSERVATIONS {
         return None;
     }
+    median_place(places)
+}
+
+/// The median of each coordinate, of however few places.
+pub(super) fn median_place(places: &[[f64; 2]]) -> Option<[f64; 2]> {
     let [x, y] = [0, 1].map(|k| median(places.iter().map(|place| place[k]).collect()));
     Some([x?, y?])
 }

@@ -113,7 +113,7 @@ pub struct Common {
     alignment.json of an earlier run is a start, too: by its transform, or else its best_candidate.\n\n\
     Exit status: 0 aligned; 1 any other verdict (alignment.json says why).")]
 pub struct AlignArgs {
-    /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), or a folder of tiles
     pub city: PathBuf,
     /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
     pub sfm: PathBuf,
@@ -205,7 +205,7 @@ pub struct MergeArgs {
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Example:\n  cityweld planes city.obj --terrain ground.obj -o planes.glb")]
 pub struct PlanesArgs {
-    /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), or a folder of tiles
     pub city: PathBuf,
     /// File to write: .glb (coloured by plane) or .json
     #[arg(short, long, value_name = "FILE")]
@@ -252,7 +252,7 @@ pub struct ManArgs {
     after_help = "Example:\n  cityweld export city.obj sfm/ --alignment out/alignment.json --format glb,ply -o again"
 )]
 pub struct ExportArgs {
-    /// City model: OBJ, glTF, GLB, CityJSON, or a folder of them
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), or a folder of tiles
     pub city: PathBuf,
     /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
     pub sfm: PathBuf,

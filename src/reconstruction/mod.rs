@@ -31,7 +31,7 @@ pub use model::{
     CameraIndex, CloudCrs, ColmapParts, Image, ImageIndex, KnownPositions, LasPacking, Observation, PointIndex,
     Reconstruction, SfmFormat, Sight,
 };
-pub use names::{AmbiguousName, NameMatch, match_names};
+pub use names::{AmbiguousName, NameIndex, NameMatch, match_names};
 pub use read::{ReconstructionError, read_reconstruction};
 pub use recognise::{SfmSource, recognise};
 pub use warning::{ReconstructionWarning, WarningKind};

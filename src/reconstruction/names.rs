@@ -87,7 +87,7 @@ pub fn match_names(wanted: &[&str], present: &[&str]) -> Result<Vec<Option<(usiz
     }
     let mut taken_by = vec![None; present.len()];
     found.iter().enumerate().filter_map(|(w, f)| Some((w, (*f)?.0))).for_each(|(w, p)| taken_by[p] = Some(w));
-    let index = Index::of(present);
+    let index = NameIndex::of(present.iter().copied());
     for (number, name) in wanted.iter().enumerate().filter(|(number, _)| found[*number].is_none()).collect::<Vec<_>>() {
         let Some((place, how)) = index.find(name)? else { continue };
         match taken_by[place] {
@@ -106,26 +106,28 @@ pub fn match_names(wanted: &[&str], present: &[&str]) -> Result<Vec<Option<(usiz
     Ok(found)
 }
 
-/// Names by their file name and by their stem.
-struct Index<'a> {
-    present: &'a [&'a str],
+/// Names that are there, by their file name and by their stem.
+pub struct NameIndex<'a> {
+    present: Vec<&'a str>,
     parts: Vec<Parts>,
     by_file: HashMap<String, Vec<usize>>,
     by_stem: HashMap<String, Vec<usize>>,
 }
 
-impl<'a> Index<'a> {
-    fn of(present: &'a [&'a str]) -> Index<'a> {
+impl<'a> NameIndex<'a> {
+    pub fn of(present: impl IntoIterator<Item = &'a str>) -> NameIndex<'a> {
+        let present: Vec<&str> = present.into_iter().collect();
         let parts: Vec<Parts> = present.iter().map(|name| Parts::of(name)).collect();
         let (mut by_file, mut by_stem): (HashMap<String, Vec<usize>>, HashMap<String, Vec<usize>>) = Default::default();
         for (number, part) in parts.iter().enumerate() {
             by_file.entry(part.file.clone()).or_default().push(number);
             by_stem.entry(part.stem.clone()).or_default().push(number);
         }
-        Index { present, parts, by_file, by_stem }
+        NameIndex { present, parts, by_file, by_stem }
     }
 
-    fn find(&self, name: &str) -> Result<Option<(usize, NameMatch)>, AmbiguousName> {
+    /// Which of the names that are there this one means, and how that was told; each may be meant by several.
+    pub fn find(&self, name: &str) -> Result<Option<(usize, NameMatch)>, AmbiguousName> {
         let sought = Parts::of(name);
         if let Some(place) = self.best(name, &sought, self.by_file.get(&sought.file))? {
             let folders = self.parts[place].common(&sought);
@@ -148,7 +150,11 @@ impl<'a> Index<'a> {
         candidates: Option<&Vec<usize>>,
     ) -> Result<Option<usize>, AmbiguousName> {
         let Some(candidates) = candidates else { return Ok(None) };
-        let rank = |i: usize| (self.parts[i].common(sought), self.parts[i].is_ending(sought));
+        let rank = |i: usize| {
+            let part = &self.parts[i];
+            // Of two endings the path itself.
+            (part.common(sought), part.is_ending(sought), part.folders == sought.folders)
+        };
         let Some(highest) = candidates.iter().map(|i| rank(*i)).max() else { return Ok(None) };
         let mut best = candidates.iter().filter(|i| rank(**i) == highest);
         match (best.next(), best.next()) {

@@ -1,28 +1,28 @@
-//! Faces of a PLY file (clouds are read by `ply.rs`).
+//! Faces of a PLY file (`ply/` reads clouds, and the header of both).
 
+use crate::format::ply::{ByteOrder, Element, Encoding, FieldKind, Header, PropertyKind};
 use crate::format::surface_builder::{SurfaceBuilder, SurfaceTraits};
 use crate::format::surface_error::{Place, SurfaceError};
 use crate::format::surfaces::SurfaceFile;
 
-/// A header longer than this is none.
-const LONGEST_HEADER_BYTES: usize = 1 << 20;
-
 /// Corners of one face; more is a file made to take time.
 const MOST_CORNERS: f64 = 1e7;
 
+const CUT_OFF: &str = "the PLY is cut off: the header says more rows; get it again";
+
 /// Whether a PLY file has faces.
 pub fn is_ply_mesh(bytes: &[u8]) -> bool {
-    let header = Header::of(bytes);
+    let header = Header::read(bytes);
     header.is_ok_and(|header| header.elements.iter().any(|element| element.name == "face" && element.count > 0))
 }
 
 /// Reads the faces as one object of this name.
 pub fn read_ply_mesh(bytes: &[u8], name: &str) -> Result<SurfaceFile, SurfaceError> {
-    let header = Header::of(bytes)?;
+    let header = header_of(bytes)?;
     let mut builder = SurfaceBuilder::default();
     builder.file.format = "PLY mesh".to_owned();
     let object = builder.add_object(name.to_owned(), "Mesh", None);
-    let mut cells = Cells { bytes, at: header.end, encoding: header.encoding };
+    let mut cells = Cells { bytes, at: header.bytes, encoding: header.encoding };
     let mut faces = Vec::new();
     for element in &header.elements {
         for row in 0..element.count {
@@ -70,18 +70,18 @@ fn read_row(
 ) -> Result<(), String> {
     let mut position = [0.0; 3];
     for property in &element.properties {
-        match (&property.list_of, element.name.as_str()) {
-            (None, "vertex") => {
-                let value = cells.take(property.scalar)?;
+        match (property.kind, element.name.as_str()) {
+            (PropertyKind::Scalar(kind), "vertex") => {
+                let value = cells.take(kind)?;
                 if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == property.name) {
                     position[axis] = value;
                 }
             }
-            (None, _) => {
-                cells.take(property.scalar)?;
+            (PropertyKind::Scalar(kind), _) => {
+                cells.take(kind)?;
             }
-            (Some(item), name) => {
-                let count = cells.take(property.scalar)?;
+            (PropertyKind::List(length, item), name) => {
+                let count = cells.take(length)?;
                 if !(0.0..=MOST_CORNERS).contains(&count) {
                     return Err(format!("a list says {count} values; write the PLY again"));
                 }
@@ -90,7 +90,7 @@ fn read_row(
                     faces.push(count as u32);
                 }
                 for _ in 0..count as u32 {
-                    let value = cells.take(*item)?;
+                    let value = cells.take(item)?;
                     if is_face {
                         faces.push(index(value)?);
                     }
@@ -116,125 +116,11 @@ fn index(value: f64) -> Result<u32, String> {
     Err(format!("`{value}` is no number of a vertex; write the PLY again"))
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Encoding {
-    Text,
-    Little,
-    Big,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
-
-#[derive(Debug)]
-struct Element {
-    name: String,
-    count: u64,
-    properties: Vec<Property>,
-}
-
-#[derive(Debug)]
-struct Property {
-    name: String,
-    /// Of the value, or of a list's length.
-    scalar: Scalar,
-    list_of: Option<Scalar>,
-}
-
-#[derive(Debug)]
-struct Header {
-    encoding: Encoding,
-    elements: Vec<Element>,
-    /// Where the rows begin.
-    end: usize,
-}
-
-impl Header {
-    fn of(bytes: &[u8]) -> Result<Header, SurfaceError> {
-        let mut header = Header { encoding: Encoding::Text, elements: Vec::new(), end: 0 };
-        for (number, line) in
-            bytes[..bytes.len().min(LONGEST_HEADER_BYTES)].split_inclusive(|&byte| byte == b'\n').enumerate()
-        {
-            let place = Place::Line { line: number as u64 + 1, byte: header.end as u64 };
-            header.end += line.len();
-            let line = String::from_utf8_lossy(line);
-            let words: Vec<&str> = line.split_whitespace().collect();
-            if words[..] == ["end_header"] && number > 0 {
-                return header.checked();
-            }
-            let known = if number == 0 { (words[..] == ["ply"]).then_some(()) } else { header.line(&words) };
-            let shown: String = line.trim().chars().take(40).collect();
-            known.ok_or_else(|| {
-                SurfaceError::at(place, format!("`{shown}` is no line of a PLY header; write the PLY again"))
-            })?;
-        }
-        Err(SurfaceError::whole("the PLY header has no end_header; get the file again"))
-    }
-
-    fn line(&mut self, words: &[&str]) -> Option<()> {
-        match words {
-            [] | ["comment" | "obj_info", ..] => {}
-            ["format", "ascii", _] => self.encoding = Encoding::Text,
-            ["format", "binary_little_endian", _] => self.encoding = Encoding::Little,
-            ["format", "binary_big_endian", _] => self.encoding = Encoding::Big,
-            ["element", name, count] => {
-                let (name, count) = ((*name).to_owned(), count.parse().ok()?);
-                self.elements.push(Element { name, count, properties: Vec::new() });
-            }
-            ["property", "list", length, item, name] => {
-                let (name, scalar, list_of) = ((*name).to_owned(), scalar(length)?, Some(scalar(item)?));
-                self.elements.last_mut()?.properties.push(Property { name, scalar, list_of });
-            }
-            ["property", kind, name] => {
-                let (name, scalar) = ((*name).to_owned(), scalar(kind)?);
-                self.elements.last_mut()?.properties.push(Property { name, scalar, list_of: None });
-            }
-            _ => return None,
-        }
-        Some(())
-    }
-
-    fn checked(self) -> Result<Header, SurfaceError> {
-        let is_given = |axis: &&str| {
-            let mut vertices = self.elements.iter().filter(|element| element.name == "vertex");
-            vertices.any(|vertex| {
-                vertex.properties.iter().any(|property| property.name == **axis && property.list_of.is_none())
-            })
-        };
-        if !["x", "y", "z"].iter().all(is_given) {
-            return Err(SurfaceError::whole("the PLY has no vertices with x, y and z; write it again"));
-        }
-        // No number of bytes would bound them.
-        if let Some(element) = self.elements.iter().find(|element| element.properties.is_empty() && element.count > 0) {
-            return Err(SurfaceError::whole(format!(
-                "the element `{}` has no properties; write the PLY again",
-                element.name
-            )));
-        }
-        Ok(self)
-    }
-}
-
-fn scalar(name: &str) -> Option<Scalar> {
-    Some(match name {
-        "char" | "int8" => Scalar::I8,
-        "uchar" | "uint8" => Scalar::U8,
-        "short" | "int16" => Scalar::I16,
-        "ushort" | "uint16" => Scalar::U16,
-        "int" | "int32" => Scalar::I32,
-        "uint" | "uint32" => Scalar::U32,
-        "float" | "float32" => Scalar::F32,
-        "double" | "float64" => Scalar::F64,
-        _ => return None,
+fn header_of(bytes: &[u8]) -> Result<Header, SurfaceError> {
+    Header::read(bytes).map_err(|fault| {
+        let start = bytes.split_inclusive(|byte| *byte == b'\n').take(fault.line - 1).map(<[u8]>::len).sum::<usize>();
+        let place = Place::Line { line: fault.line as u64, byte: start as u64 };
+        SurfaceError::at(place, format!("{}; write the PLY again", fault.problem))
     })
 }
 
@@ -246,10 +132,10 @@ struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    fn take(&mut self, scalar: Scalar) -> Result<f64, String> {
+    fn take(&mut self, kind: FieldKind) -> Result<f64, String> {
         match self.encoding {
-            Encoding::Text => self.take_word(),
-            _ => self.take_bytes(scalar),
+            Encoding::Ascii => self.take_word(),
+            Encoding::Binary(order) => self.take_bytes(kind, order),
         }
     }
 
@@ -259,33 +145,15 @@ impl Cells<'_> {
         let word = rest[start..].split(u8::is_ascii_whitespace).next().unwrap_or_default();
         self.at += start + word.len();
         if word.is_empty() {
-            return Err("the PLY is cut off: the header says more rows; get it again".to_owned());
+            return Err(CUT_OFF.to_owned());
         }
         let shown = || word[..word.len().min(40)].escape_ascii().to_string();
         fast_float2::parse(word).map_err(|_| format!("`{}` is no number; write the PLY again", shown()))
     }
 
-    fn take_bytes(&mut self, scalar: Scalar) -> Result<f64, String> {
-        let value = match scalar {
-            Scalar::I8 => self.array::<1>().map(|bytes| f64::from(i8::from_le_bytes(bytes))),
-            Scalar::U8 => self.array::<1>().map(|[byte]| f64::from(byte)),
-            Scalar::I16 => self.array().map(|bytes| f64::from(i16::from_le_bytes(bytes))),
-            Scalar::U16 => self.array().map(|bytes| f64::from(u16::from_le_bytes(bytes))),
-            Scalar::I32 => self.array().map(|bytes| f64::from(i32::from_le_bytes(bytes))),
-            Scalar::U32 => self.array().map(|bytes| f64::from(u32::from_le_bytes(bytes))),
-            Scalar::F32 => self.array().map(|bytes| f64::from(f32::from_le_bytes(bytes))),
-            Scalar::F64 => self.array().map(f64::from_le_bytes),
-        };
-        value.ok_or_else(|| "the PLY is cut off: the header says more rows; get it again".to_owned())
-    }
-
-    /// The next bytes in little-endian order.
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let mut taken: [u8; N] = self.bytes.get(self.at..)?.first_chunk().copied()?;
-        if self.encoding == Encoding::Big {
-            taken.reverse();
-        }
-        self.at += N;
-        Some(taken)
+    fn take_bytes(&mut self, kind: FieldKind, order: ByteOrder) -> Result<f64, String> {
+        let value = self.bytes.get(self.at..).and_then(|rest| kind.read(rest, order));
+        self.at += kind.size();
+        value.ok_or_else(|| CUT_OFF.to_owned())
     }
 }

@@ -24,7 +24,7 @@ pub struct CloudField {
 
 /// Order of the bytes of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ByteOrder {
+pub(in crate::format) enum ByteOrder {
     Little,
     Big,
 }
@@ -73,7 +73,7 @@ impl FieldKind {
     }
 
     /// The number in the first bytes; `None` where there are too few. Every type fits an f64 exactly.
-    pub(super) fn read(self, bytes: &[u8], order: ByteOrder) -> Option<f64> {
+    pub(in crate::format) fn read(self, bytes: &[u8], order: ByteOrder) -> Option<f64> {
         macro_rules! number {
             ($kind:ty) => {{
                 let raw = *bytes.first_chunk()?;

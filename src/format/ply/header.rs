@@ -11,13 +11,13 @@ const SHOWN_BYTES: usize = 40;
 const MAX_HEADER_BYTES: usize = 1 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Encoding {
+pub(in crate::format) enum Encoding {
     Ascii,
     Binary(ByteOrder),
 }
 
 #[derive(Debug)]
-pub(super) struct Header {
+pub(in crate::format) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
     /// Lines up to the end of the header.
@@ -27,20 +27,20 @@ pub(super) struct Header {
 }
 
 #[derive(Debug)]
-pub(super) struct Element {
+pub(in crate::format) struct Element {
     pub name: String,
     pub count: usize,
     pub properties: Vec<Property>,
 }
 
 #[derive(Debug)]
-pub(super) struct Property {
+pub(in crate::format) struct Property {
     pub name: String,
     pub kind: PropertyKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PropertyKind {
+pub(in crate::format) enum PropertyKind {
     Scalar(FieldKind),
     /// Type of the count, type of the values.
     List(FieldKind, FieldKind),
@@ -48,7 +48,7 @@ pub(super) enum PropertyKind {
 
 /// What is wrong in a header, and in which line (from 1).
 #[derive(Debug)]
-pub(super) struct HeaderFault {
+pub(in crate::format) struct HeaderFault {
     pub line: usize,
     pub problem: String,
 }

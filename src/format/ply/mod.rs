@@ -7,7 +7,9 @@ mod read;
 mod rows;
 
 pub use cloud::PlyCloud;
+pub(super) use field::ByteOrder;
 pub use field::{CloudField, FieldKind};
+pub(super) use header::{Element, Encoding, Header, PropertyKind};
 pub use read::{PlyError, is_ply, read_ply};
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! same fields. A new format of a city or a reconstruction needs nothing here but a name.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -100,8 +100,8 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     if !matches!(no_reconstruction, ReconstructionError::NotAReconstruction { .. }) {
         return Err(no_reconstruction.into());
     }
-    let no_city = match read_city_contents(&[path.to_owned()], &CityOptions::default()) {
-        Ok(contents) => return Inspection::of_city(path, &contents),
+    let no_city = match inspect_city(path) {
+        Ok(found) => return Ok(found),
         // As above.
         Err(error) if !matches!(error, CityError::OtherFormat { .. }) => return Err(error.into()),
         Err(error) => error,
@@ -117,6 +117,25 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     }
 }
 
+/// What the files of a city hold, and the model that is made of them; what has nothing to align with is told as well.
+fn inspect_city(path: &Path) -> Result<Inspection, CityError> {
+    let options = CityOptions::default();
+    match read_city(path, &[], &options) {
+        Ok(city) => {
+            let mut found = Inspection::of_city(path, city.sources.iter().map(|source| &source.contents));
+            found.add_model(&city);
+            Ok(found)
+        }
+        Err(error @ (CityError::NoFaces { .. } | CityError::OnlyFootprints { .. })) => {
+            let contents = read_city_contents(&[path.to_owned()], &options)?;
+            let mut found = Inspection::of_city(path, contents.iter().map(|(_, file)| file));
+            found.warnings.push("nothing in it can be aligned with: it has no walls and roofs".to_owned());
+            if found.objects == Some(0) { Err(error) } else { Ok(found) }
+        }
+        Err(error) => Err(error),
+    }
+}
+
 /// A folder holds a reconstruction, or else the tiles of a city, or else photographs.
 fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
     let no_model = match read_reconstruction(path) {
@@ -126,8 +145,10 @@ fn inspect_folder(path: &Path) -> Result<Inspection, Error> {
     if !matches!(no_model, ReconstructionError::NotAReconstruction { .. }) {
         return Err(no_model.into());
     }
-    if let Ok(contents) = read_city_contents(&[path.to_owned()], &CityOptions::default()) {
-        return Inspection::of_city(path, &contents);
+    match inspect_city(path) {
+        Ok(found) => return Ok(found),
+        Err(CityError::EmptyFolder { .. }) => {}
+        Err(error) => return Err(error.into()),
     }
     let photographs = photographs_in(path).map_or(0, |found| found.len());
     if photographs == 0 {
@@ -148,15 +169,14 @@ impl Inspection {
         Inspection { path: path.to_string_lossy().into_owned(), kind, format: format.into(), ..Inspection::default() }
     }
 
-    /// What the files of a city hold, and the model that is made of them where one can be made.
-    fn of_city(path: &Path, contents: &[(PathBuf, CityContents)]) -> Result<Inspection, Error> {
-        let format = contents.first().map_or("", |(_, first)| first.format.as_str());
+    fn of_city<'a>(path: &Path, contents: impl Iterator<Item = &'a CityContents> + Clone) -> Inspection {
+        let format = contents.clone().next().map_or("", |first| first.format.as_str());
         let mut found = Inspection::of(path, InputKind::City, format);
-        let sum = |of: fn(&CityContents) -> usize| Some(contents.iter().map(|(_, file)| of(file)).sum());
+        let sum = |of: fn(&CityContents) -> usize| Some(contents.clone().map(of).sum());
         found.objects = sum(|file| file.objects);
         found.parts = sum(|file| file.parts);
         found.holes = sum(|file| file.holes);
-        let levels = contents.iter().flat_map(|(_, file)| &file.polygons);
+        let levels = contents.clone().flat_map(|file| &file.polygons);
         // Formats without levels and kinds have nothing to tell here.
         for (lod, counts) in levels.filter(|(lod, counts)| lod.is_some() || counts.total() > counts.unsaid) {
             let level = found.polygons.entry(lod.map_or("unsaid".to_owned(), |lod| lod.to_string())).or_default();
@@ -164,16 +184,8 @@ impl Inspection {
                 *level.entry(kind.to_owned()).or_default() += count;
             }
         }
-        found.crs = contents.iter().find_map(|(_, file)| file.crs.as_ref()).map(InspectedCrs::of);
-        let has_objects = found.objects.is_some_and(|objects| objects > 0);
-        match read_city(path, &[], &CityOptions::default()) {
-            Ok(city) => found.add_model(&city),
-            Err(CityError::NoFaces { .. }) | Err(CityError::OnlyFootprints { .. }) if has_objects => {
-                found.warnings.push("nothing in it can be aligned with: it has no walls and roofs".to_owned());
-            }
-            Err(error) => return Err(error.into()),
-        }
-        Ok(found)
+        found.crs = contents.clone().find_map(|file| file.crs.as_ref()).map(InspectedCrs::of);
+        found
     }
 
     fn add_model(&mut self, city: &CityModel) {

@@ -1,5 +1,6 @@
 //! Files to city model, on one page: which format each is, one frame for all, polygons, model.
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use super::build::build;
@@ -13,10 +14,10 @@ use super::units::guess;
 use super::upright::odd_up;
 use super::warning::{CityDefect, CityPlace, CityWarning};
 use super::{CityContents, CityError, CityModel, CityOptions, CityRole, CityUnit, CityUp};
-use crate::format::SurfaceError;
-use crate::format::citygml::read_citygml;
+use crate::format::citygml::{is_citygml, read_citygml};
 use crate::format::cityjson::read_cityjson;
-use crate::format::footprints::{FootprintFields, read_geopackage, read_shapefile};
+use crate::format::file::open_regular;
+use crate::format::footprints::{read_geopackage, read_shapefile};
 use crate::format::gltf::{GltfFile, read_gltf};
 use crate::format::meshes::{read_ply_mesh, read_stl};
 use crate::format::obj::{ObjFile, read_obj};
@@ -97,60 +98,65 @@ enum Content {
     Surfaces(SurfaceFile),
 }
 
-/// The formats whose readers speak of surfaces and fail alike.
-fn read_surfaces(
-    format: Format,
-    bytes: &[u8],
-    path: &Path,
-    footprints: &FootprintFields,
-) -> Result<SurfaceFile, SurfaceError> {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let of_tiles = |tiles: TilesetFile| {
-        let crs = tiles.tangent().map(|[latitude, longitude]| {
-            format!(
-                "east, north, up at {latitude:.7}, {longitude:.7} (WGS 84), set upright from earth-centred coordinates"
-            )
-        });
-        SurfaceFile { step: Some(tiles.spacing_m), crs, ..tiles.surfaces }
-    };
-    match format {
-        Format::Tileset => read_tileset(path).map(of_tiles),
-        Format::Tile => read_tile(bytes, path).map(of_tiles),
-        Format::Shapefile => read_shapefile(path, footprints),
-        Format::GeoPackage => read_geopackage(path, footprints),
-        Format::Stl => read_stl(bytes, &name),
-        Format::PlyMesh => read_ply_mesh(bytes, &name),
-        Format::CityGml | Format::CityJson | Format::Gltf | Format::Obj => read_citygml(bytes),
+/// CityGML is read as it comes, however long it is; `None` where the file is something else.
+fn citygml_at(path: &Path) -> Result<Option<SurfaceFile>, CityError> {
+    let unreadable = |reason| CityError::Unreadable { path: path.to_owned(), reason };
+    let mut file = BufReader::with_capacity(BEGINNING_BYTES, open_regular(path).map_err(unreadable)?);
+    if !is_citygml(file.fill_buf().map_err(unreadable)?) {
+        return Ok(None);
     }
+    let failed = |error| CityError::Surfaces { path: path.to_owned(), error: Box::new(error) };
+    read_citygml(file).map(Some).map_err(failed)
+}
+
+/// Bytes that tell whether a file is CityGML.
+const BEGINNING_BYTES: usize = 1 << 16;
+
+/// Tiles with where they stand on the earth, if they say it.
+fn surfaces_of_tiles(tiles: TilesetFile) -> SurfaceFile {
+    let crs = tiles.tangent().map(|[latitude, longitude]| {
+        format!("east, north, up at {latitude:.7}, {longitude:.7} (WGS 84), set upright from earth-centred coordinates")
+    });
+    SurfaceFile { step: Some(tiles.spacing_m), crs, ..tiles.surfaces }
 }
 
 impl Parsed {
     fn read(path: &Path, role: CityRole, options: &CityOptions) -> Result<Parsed, CityError> {
+        let content = match citygml_at(path)? {
+            Some(file) => Content::Surfaces(file),
+            None => Parsed::content(path, options)?,
+        };
+        Ok(Parsed { path: path.to_owned(), role, content })
+    }
+
+    fn content(path: &Path, options: &CityOptions) -> Result<Content, CityError> {
         let bytes = open(path)?;
-        let path = path.to_owned();
-        let format = recognise(&bytes, &path)?;
-        let content = match format {
+        let of_path = || path.to_owned();
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let surfaces = match recognise(&bytes, path)? {
             Format::Gltf => {
-                let folder = path.parent().unwrap_or(Path::new(""));
-                let file = read_gltf(&bytes, folder);
-                Content::Gltf(file.map_err(|error| CityError::Gltf { path: path.clone(), error: Box::new(error) })?)
+                let file = read_gltf(&bytes, path.parent().unwrap_or(Path::new("")));
+                return file
+                    .map(Content::Gltf)
+                    .map_err(|error| CityError::Gltf { path: of_path(), error: Box::new(error) });
             }
             Format::CityJson => {
                 let file = read_cityjson(&bytes);
-                let error = |error| CityError::CityJson { path: path.clone(), error: Box::new(error) };
-                Content::Surfaces(file.map_err(error)?)
+                return file
+                    .map(Content::Surfaces)
+                    .map_err(|error| CityError::CityJson { path: of_path(), error: Box::new(error) });
             }
             Format::Obj => {
-                Content::Obj(read_obj(&bytes).map_err(|error| CityError::Obj { path: path.clone(), error })?)
+                return read_obj(&bytes).map(Content::Obj).map_err(|error| CityError::Obj { path: of_path(), error });
             }
-            _ => {
-                let file = read_surfaces(format, &bytes, &path, &options.footprints);
-                Content::Surfaces(
-                    file.map_err(|error| CityError::Surfaces { path: path.clone(), error: Box::new(error) })?,
-                )
-            }
+            Format::Tileset => read_tileset(path).map(surfaces_of_tiles),
+            Format::Tile => read_tile(&bytes, path).map(surfaces_of_tiles),
+            Format::Shapefile => read_shapefile(path, &options.footprints),
+            Format::GeoPackage => read_geopackage(path, &options.footprints),
+            Format::Stl => read_stl(&bytes, &name),
+            Format::PlyMesh => read_ply_mesh(&bytes, &name),
         };
-        Ok(Parsed { path, role, content })
+        surfaces.map(Content::Surfaces).map_err(|error| CityError::Surfaces { path: of_path(), error: Box::new(error) })
     }
 
     fn surfaces(&self) -> Option<&SurfaceFile> {

@@ -7,7 +7,6 @@ use serde::de::IgnoredAny;
 
 use super::CityError;
 use super::foreign::foreign_format;
-use crate::format::citygml::is_citygml;
 use crate::format::footprints::{is_geopackage, is_shapefile};
 use crate::format::gltf::is_glb;
 use crate::format::meshes::{is_ply_mesh, is_stl};
@@ -18,7 +17,6 @@ pub(super) enum Format {
     Obj,
     /// One city, or a sequence of features.
     CityJson,
-    CityGml,
     /// JSON or GLB; the reader tells them apart.
     Gltf,
     /// The root of a tree of tiles.
@@ -46,9 +44,8 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
     if bytes.is_empty() {
         return other(("the file is empty", "write it again"));
     }
-    let by_mark: [(Recogniser, Format); 7] = [
+    let by_mark: [(Recogniser, Format); 6] = [
         (is_glb, Format::Gltf),
-        (is_citygml, Format::CityGml),
         (is_tile, Format::Tile),
         (is_shapefile, Format::Shapefile),
         (is_geopackage, Format::GeoPackage),

@@ -30,13 +30,14 @@ impl System<'_> {
             self.building_weights[b] = weight(squared / self.variances.building[kind], OF_BUILDING, limits.student_dof);
             of_buildings[kind].add(self.building_weights[b] * squared);
             for (k, building_plane) in of_building.building_planes.clone().enumerate() {
-                let (offsets, squared) = self.building_plane_found(b, k, &building, &covariance);
+                let found = self.building_plane_found(b, k, &building, &covariance);
+                let squared = found.squared;
                 let kind = sample.building_planes[building_plane].kind as usize;
                 self.building_plane_weights[building_plane] =
                     weight(squared / self.variances.building_plane[kind], OF_BUILDING_PLANE, limits.student_dof);
                 of_building_planes[kind].add(self.building_plane_weights[building_plane] * squared);
                 for cell in sample.building_planes[building_plane].cells.clone() {
-                    let squared = self.update_cell(cell, &building, &offsets);
+                    let squared = self.update_cell(cell, &building, &found);
                     of_cells.add(squared);
                 }
             }
@@ -71,39 +72,68 @@ impl System<'_> {
         (found, joint, squared)
     }
 
-    /// A building plane's offset and tilts, and their expected square.
+    /// A building plane's offset and tilts, with all that they err together with.
     pub(super) fn building_plane_found(
         &self,
         b: usize,
         k: usize,
         building: &DVector<f64>,
         joint: &DMatrix<f64>,
-    ) -> (DVector<f64>, f64) {
+    ) -> BuildingPlaneFound {
         let (n, own) = (self.common, &self.parts[b].building_planes[k]);
         // Common unknowns, then the building's; the distance's row stands between.
         let others: Vec<usize> = (0..n).chain(n + 1..n + 1 + OF_BUILDING).collect();
         let coupling = own.coupling.select_rows(&others);
         let values = DVector::from_iterator(others.len(), self.found.iter().chain(building.iter()).copied());
-        let found = -(&own.covariance * (own.coupling.row(n).transpose() + coupling.transpose() * values));
+        let offsets = -(&own.covariance * (own.coupling.row(n).transpose() + coupling.transpose() * values));
         let gain = &own.covariance * coupling.transpose();
-        let covariance = &own.covariance + &gain * joint * gain.transpose();
-        let squared = found.norm_squared() + covariance.trace();
-        (found, squared)
+        let cross = -(&gain * joint);
+        let block = &own.covariance - &cross * gain.transpose();
+        let squared = offsets.norm_squared() + block.trace();
+        let before = others.len();
+        let mut all = DMatrix::zeros(before + OF_BUILDING_PLANE, before + OF_BUILDING_PLANE);
+        all.view_mut((0, 0), (before, before)).copy_from(joint);
+        all.view_mut((before, 0), (OF_BUILDING_PLANE, before)).copy_from(&cross);
+        all.view_mut((0, before), (before, OF_BUILDING_PLANE)).copy_from(&cross.transpose());
+        all.view_mut((before, before), (OF_BUILDING_PLANE, OF_BUILDING_PLANE)).copy_from(&block);
+        BuildingPlaneFound { offsets, squared, joint: all }
     }
 
-    /// The expected square of a surface cell's own error.
-    fn update_cell(&mut self, cell: usize, building: &DVector<f64>, offsets: &DVector<f64>) -> f64 {
-        let row = self.rows.column(cell);
-        let n = self.common;
+    /// How far a surface cell lies off its facet when all unknowns are what they turn out to be, and the variance of that.
+    pub(super) fn residual(
+        &self,
+        cell: usize,
+        building: &DVector<f64>,
+        building_plane: &BuildingPlaneFound,
+    ) -> (f64, f64) {
+        let (n, row) = (self.common, self.rows.column(cell));
+        let (common, own) = (row.rows(0, n), row.rows(n + 1, OF_BUILDING + OF_BUILDING_PLANE));
         let off_m = row[n]
-            + row.rows(0, n).dot(&self.found)
-            + row.rows(n + 1, OF_BUILDING).dot(building)
-            + row.rows(n + 1 + OF_BUILDING, OF_BUILDING_PLANE).dot(offsets);
-        let variance = self.variance_of_cell(cell);
-        self.cell_weights[cell] = weight(off_m * off_m / variance, 1, self.limits.student_dof);
-        let share = self.variances.cell / variance;
-        self.cell_weights[cell] * (share * off_m).powi(2) + self.variances.cell * (1.0 - share)
+            + common.dot(&self.found)
+            + own.rows(0, OF_BUILDING).dot(building)
+            + own.rows(OF_BUILDING, OF_BUILDING_PLANE).dot(&building_plane.offsets);
+        let row = DVector::from_iterator(row.len() - 1, common.iter().chain(own.iter()).copied());
+        (off_m, row.dot(&(&building_plane.joint * &row)))
     }
+
+    /// The expected square of a surface cell's own error. Its residual was made small by unknowns that were fitted to it: what is not known of these belongs to the expectation.
+    fn update_cell(&mut self, cell: usize, building: &DVector<f64>, building_plane: &BuildingPlaneFound) -> f64 {
+        let (off_m, unknown) = self.residual(cell, building, building_plane);
+        let squared = off_m * off_m + unknown;
+        let variance = self.variance_of_cell(cell);
+        self.cell_weights[cell] = weight(squared / variance, 1, self.limits.student_dof);
+        let share = self.variances.cell / variance;
+        self.cell_weights[cell] * share * share * squared + self.variances.cell * (1.0 - share)
+    }
+}
+
+/// A building plane's offset and tilts as they turn out to be.
+pub(super) struct BuildingPlaneFound {
+    pub offsets: DVector<f64>,
+    /// Their expected square.
+    pub squared: f64,
+    /// Covariance of the common unknowns, the building's and these.
+    pub joint: DMatrix<f64>,
 }
 
 /// A mean of squares that begins with what is known beforehand.

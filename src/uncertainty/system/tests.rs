@@ -1,6 +1,7 @@
 use super::super::leave_out::by_building_plane;
 use super::super::observations::observations;
 use super::super::rows::OF_BUILDING_PLANE;
+use super::super::variances::BuildingPlaneFound;
 use super::*;
 use crate::correspondence::test_scene::Made;
 use crate::robust::Motion;
@@ -121,6 +122,7 @@ fn unknowns_of_buildings_and_planes_put_back_are_those_of_the_dense_system() {
         let Dense { matrix, right, building_starts, plane_starts, rows } = dense(system, observed);
         let covariance = inverse(matrix);
         let found = &covariance * right;
+        let n = system.common;
         assert_eq!(rows.len(), observed.cells.len());
         for (b, building) in observed.buildings.iter().enumerate() {
             let (own, joint, squared) = system.building_found(b);
@@ -130,12 +132,21 @@ fn unknowns_of_buildings_and_planes_put_back_are_those_of_the_dense_system() {
             let expected = found.rows(start, OF_BUILDING).norm_squared() + block.trace();
             assert!((squared - expected).abs() < 1e-7 * expected, "{squared} {expected}");
             for (k, p) in building.building_planes.clone().enumerate() {
-                let (offsets, squared) = system.building_plane_found(b, k, &own, &joint);
+                let BuildingPlaneFound { offsets, squared, joint } = system.building_plane_found(b, k, &own, &joint);
                 let start = plane_starts[p];
                 assert!((found.rows(start, OF_BUILDING_PLANE) - &offsets).norm() < 1e-7);
                 let block = covariance.view((start, start), (OF_BUILDING_PLANE, OF_BUILDING_PLANE));
                 let expected = found.rows(start, OF_BUILDING_PLANE).norm_squared() + block.trace();
                 assert!((squared - expected).abs() < 1e-6 * expected, "{squared} {expected}");
+                let of_plane = BuildingPlaneFound { offsets, squared, joint };
+                for cell in observed.building_planes[p].cells.clone() {
+                    let (off_m, unknown) = system.residual(cell, &own, &of_plane);
+                    let row = &rows[cell];
+                    let expected_m = system.rows[(n, cell)] + row.dot(&found);
+                    assert!((off_m - expected_m).abs() < 1e-7, "{off_m} {expected_m}");
+                    let expected = row.dot(&(&covariance * row));
+                    assert!((unknown - expected).abs() < 1e-6 * expected, "{unknown} {expected}");
+                }
             }
         }
     });

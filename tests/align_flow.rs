@@ -375,6 +375,18 @@ fn a_start_that_is_exactly_right_and_sure_of_it_is_aligned() {
     assert!(level < 0.03 && up < 0.03, "off by {level} m, {up} m");
 }
 
+/// A city's model stands off its own coordinate system by decimetres, so a start of survey grade is off by as much.
+#[test]
+fn a_start_that_is_sure_to_the_centimetre_and_half_a_metre_off_does_not_hide_the_right_pose() {
+    let sure = StartSigmas { position_m: 0.02, height_m: 0.02, heading_rad: 1e-3, tilt_rad: 1e-3, log_scale: 1e-3 };
+    let off = Offset { shift_m: [0.4, -0.3, 0.2], ..Offset::default() };
+    let start = Start::new(block(true).off(&off) * sfm_from_city().inverse(), sure).unwrap();
+    let alignment = run(true, &AlignOptions::new(start));
+    assert_eq!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
+    let (level, up) = errors(&alignment);
+    assert!(level < 0.05 && up < 0.05, "off by {level} m, {up} m");
+}
+
 #[test]
 fn a_scale_that_leaves_no_place_is_said_before_a_search() {
     for scale in [1e-100, 1e-15, 1e300] {

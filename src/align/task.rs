@@ -132,12 +132,18 @@ impl<'a> Task<'a> {
         Ok(View { upright: *upright, scene, hypotheses, candidates })
     }
 
-    /// The scene of a view with a prior that reaches over its neighbourhood, whatever the heading.
+    /// The scene of a view with a prior that reaches over its neighbourhood, whatever the heading. What chance does is asked of poses that are as free as those of a usual start: one
+    /// that knows everything would leave none to compare with.
     fn null_pose_scene(&self, view: &View) -> Scene<'a> {
         let limits = &self.options.limits;
-        let StartSigmas { position_m, .. } = *self.start.sigmas();
-        let least_m = limits.null_poses.least_reach_m / limits.reach_sigmas;
-        let sigmas = StartSigmas { position_m: position_m.max(least_m), heading_rad: PI, ..*self.start.sigmas() };
+        let (own, usual) = (*self.start.sigmas(), StartSigmas::default());
+        let sigmas = StartSigmas {
+            position_m: own.position_m.max(limits.null_poses.least_reach_m / limits.reach_sigmas),
+            height_m: own.height_m.max(usual.height_m),
+            heading_rad: PI,
+            tilt_rad: own.tilt_rad.max(usual.tilt_rad),
+            log_scale: own.log_scale.max(usual.log_scale),
+        };
         let start = self.start.with_sigmas(sigmas);
         Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits)
     }

@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use crate::geometry::{Matrix3, Point3, Similarity, Start, StartSigmas, Vector3};
+use crate::geometry::{LEAST_SPREAD_M, Matrix3, Point3, Similarity, Start, StartSigmas, Vector3};
 use crate::limits::Limits;
 use crate::robust::{Matrix7, Motion, MotionParameters};
 
@@ -64,8 +64,8 @@ const MARGIN_M: f64 = 2.0;
 
 impl Prior {
     /// `center_in_city` is where the start puts the cloud's middle; `city` bounds what a sigma can mean.
-    /// `radius_m`: of the cloud, metres of the start. No start is better than the model that it is compared with: an error of one plane
-    /// is what its sigmas are at least.
+    /// `radius_m`: of the cloud, metres of the start. No start is better than the model that it is compared with, which stands off its own
+    /// coordinate system by more than a plane's error: with less than [`LEAST_SPREAD_M`] the right pose can lie beyond reach.
     pub fn new(
         start: &Start,
         center_in_city: Point3<f64>,
@@ -79,7 +79,7 @@ impl Prior {
             center_in_city,
             motion,
             vertical,
-            sigmas: bounded(&start.sigmas().at_least(limits.plane_sigma_m, radius_m), &center_in_city, city),
+            sigmas: bounded(&start.sigmas().at_least(LEAST_SPREAD_M, radius_m), &center_in_city, city),
             reach_sigmas: limits.reach_sigmas,
             cost_of_sigma_sq: limits.prior_cost,
             least_tilt_rad: limits.least_tilt_rad,

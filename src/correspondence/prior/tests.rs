@@ -138,3 +138,13 @@ fn the_heading_of_a_turn_about_up_is_its_angle() {
         assert!((heading_of(turned.matrix()) - heading).abs() < 1e-12);
     }
 }
+
+#[test]
+fn no_start_is_surer_than_a_model_stands_in_its_own_coordinate_system() {
+    let sure = prior(
+        |s| *s = StartSigmas { position_m: 0.0, height_m: 0.0, heading_rad: 0.0, tilt_rad: 0.0, log_scale: 0.0 },
+        Motion::Similarity,
+    );
+    assert!(sure.reaches(&moved(&sure, [1.0, -1.0, 1.0], 0.0, 1.0)));
+    assert!(!sure.reaches(&moved(&sure, [1.1, 0.0, 0.0], 0.0, 1.0)));
+}

@@ -40,7 +40,7 @@ pub struct Inspection {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holes: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub crs: Option<InspectedCrs>,
+    pub crs: Option<Crs>,
     /// Corners of the box about all, in the file's own system, east and north first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub low: Option<[f64; 3]>,
@@ -73,20 +73,6 @@ pub enum InputKind {
     Points,
 }
 
-/// A coordinate system as a file names it, and what is understood of that.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct InspectedCrs {
-    pub text: String,
-    pub epsg: Option<u32>,
-    pub vertical: Option<String>,
-}
-
-impl InspectedCrs {
-    fn of(crs: &Crs) -> InspectedCrs {
-        InspectedCrs { text: crs.text.clone(), epsg: crs.epsg, vertical: crs.vertical.clone() }
-    }
-}
-
 /// Looks at a path, by content.
 pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     if path.is_dir() {
@@ -103,7 +89,9 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     let no_city = match inspect_city(path) {
         Ok(found) => return Ok(found),
         // As above.
-        Err(error) if !matches!(error, CityError::OtherFormat { .. }) => return Err(error.into()),
+        Err(error) if !matches!(error, CityError::OtherFormat { .. } | CityError::UnknownFormat { .. }) => {
+            return Err(error.into());
+        }
         Err(error) => error,
     };
     if let Ok(points) = read_control_points(path) {
@@ -111,8 +99,8 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     }
     match (read_positions(path), no_city) {
         (Ok(positions), _) => Ok(Inspection::of_positions(path, InputKind::Positions, &positions)),
-        // What no reader knows is told as the city's does: that one names what it is instead.
-        (Err(error), CityError::OtherFormat { found, .. }) if found.contains("unknown") => Err(error.into()),
+        // Where the city's reader knows what it is instead, it says so.
+        (Err(error), CityError::UnknownFormat { .. }) => Err(error.into()),
         (Err(_), error) => Err(error.into()),
     }
 }
@@ -184,7 +172,7 @@ impl Inspection {
                 *level.entry(kind.to_owned()).or_default() += count;
             }
         }
-        found.crs = contents.clone().find_map(|file| file.crs.as_ref()).map(InspectedCrs::of);
+        found.crs = contents.clone().find_map(|file| file.crs.clone());
         found
     }
 
@@ -213,7 +201,7 @@ impl Inspection {
             low,
             high,
             warnings: sfm.warnings.iter().map(ToString::to_string).collect(),
-            crs: sfm.crs.as_ref().map(|crs| InspectedCrs { text: crs.text.clone(), epsg: crs.epsg, vertical: None }),
+            crs: sfm.crs.clone(),
             ..Inspection::of(path, InputKind::Reconstruction, &sfm.format.to_string())
         }
     }
@@ -260,8 +248,8 @@ fn extent(places: impl Iterator<Item = Vector3<f64>>) -> Option<([f64; 3], [f64;
     corners.map(|(low, high)| (low.into(), high.into()))
 }
 
-fn crs_of(frame: &Frame) -> Option<InspectedCrs> {
-    let named = |text: String, epsg| Some(InspectedCrs { text, epsg, vertical: None });
+fn crs_of(frame: &Frame) -> Option<Crs> {
+    let named = |text: String, epsg| Some(Crs { text, epsg, vertical: None });
     match frame {
         Frame::OfTheCity => None,
         Frame::Epsg(code) => named(format!("EPSG:{code}"), Some(*code)),

@@ -63,7 +63,7 @@ pub mod cli;
 // Alignment.
 pub use align::{AlignOptions, Up, align};
 pub use error::Error;
-pub use inspect::{InputKind, InspectedCrs, Inspection, inspect};
+pub use inspect::{InputKind, Inspection, inspect};
 pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
@@ -116,8 +116,8 @@ pub mod types {
     };
     pub use crate::planes::CityPlanes;
     pub use crate::reconstruction::{
-        CameraIndex, CloudCrs, ColmapParts, ImageIndex, KnownPositions, LasPacking, PointIndex, PoseReading,
-        ReconstructionError, ReconstructionWarning, SfmFormat, SfmSource, Sight, WarningKind, recognise,
+        CameraIndex, ColmapParts, ImageIndex, KnownPositions, LasPacking, PointIndex, PoseReading, ReconstructionError,
+        ReconstructionWarning, SfmFormat, SfmSource, Sight, WarningKind, recognise,
     };
     pub use crate::robust::{Matrix7, MotionParameters};
     pub use crate::verdict::{FreedomKind, FreedomUnit, ModelErrors, PlaneSupport, SearchSummary, Support};

@@ -24,6 +24,8 @@ pub enum CityError {
     Surfaces { path: PathBuf, error: Box<SurfaceError> },
     #[error("{found}, expected a city model ({}); {remedy} ({})", FORMATS, path.display())]
     OtherFormat { path: PathBuf, found: &'static str, remedy: &'static str },
+    #[error("the file is of an unknown format, expected a city model ({}); convert it ({})", FORMATS, path.display())]
+    UnknownFormat { path: PathBuf },
     #[error("the folder has no city model in it, {found}; expected files of {} ({})", FORMATS, path.display())]
     EmptyFolder { path: PathBuf, found: String },
     #[error("the city has no faces: {found}; expected polygons with an area ({})", path.display())]

@@ -37,7 +37,7 @@ impl CityFiles {
     /// Takes what a file was read to; what is no city model by its content is passed over in a folder, and refused alone.
     pub fn taken<T>(&mut self, path: &Path, read: Result<T, CityError>) -> Result<Option<T>, CityError> {
         match read {
-            Err(CityError::OtherFormat { .. }) if self.folder.is_some() => {
+            Err(CityError::OtherFormat { .. } | CityError::UnknownFormat { .. }) if self.folder.is_some() => {
                 self.others.push(path.to_owned());
                 Ok(None)
             }

@@ -6,7 +6,6 @@
 mod axes;
 mod build;
 mod contents;
-mod crs;
 mod degrees;
 mod error;
 mod distance;
@@ -37,9 +36,9 @@ mod validate;
 mod warning;
 mod words;
 
+pub use crate::format::crs::Crs;
 pub use crate::format::surfaces::{Lod, SurfaceKind};
 pub use contents::{CityContents, KindCounts};
-pub use crs::Crs;
 pub use error::CityError;
 pub use levels::CityLod;
 pub use model::{CityModel, CityRole, CitySource, Facet, FacetId, ObjectId};

@@ -75,7 +75,7 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
     if is_named_obj || text.lines().any(is_obj_line) {
         return Ok(Format::Obj);
     }
-    other(("the file is of an unknown format", converts))
+    Err(CityError::UnknownFormat { path: path.to_owned() })
 }
 
 /// The keys of a JSON object that tell what it is; their order in the file means nothing.

@@ -8,8 +8,8 @@ use serde_json::value::{RawValue, to_raw_value};
 
 use super::ExportError;
 use super::gltf::write_colored_city;
-use super::report::{CrsJson, ReportError};
-use crate::city::{CityContents, CityModel, KindCounts, Lod};
+use super::report::ReportError;
+use crate::city::{CityContents, CityModel, Crs, KindCounts, Lod};
 use crate::geometry::{Point3, Vector3};
 use crate::planes::{CityPlane, CityPlanes};
 
@@ -47,7 +47,7 @@ pub fn planes_report(city: &CityModel, planes: &CityPlanes, files: &[String]) ->
     struct PlanesJson<'a> {
         schema: &'static str,
         files: &'a [String],
-        crs: Option<CrsJson<'a>>,
+        crs: Option<&'a Crs>,
         /// What each file holds before levels of detail were chosen.
         contents: Vec<ContentsJson<'a>>,
         origin: Box<RawValue>,
@@ -65,7 +65,7 @@ pub fn planes_report(city: &CityModel, planes: &CityPlanes, files: &[String]) ->
     let report = PlanesJson {
         schema: SCHEMA,
         files,
-        crs: city.crs.as_ref().map(CrsJson::of),
+        crs: city.crs.as_ref(),
         contents: city.sources.iter().map(|source| ContentsJson::of(&source.contents)).collect(),
         origin: to_raw_value(city.origin.as_slice())?,
         low: to_raw_value(&absolute(&low))?,

@@ -47,7 +47,7 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
             })
             .collect::<Result<_, serde_json::Error>>()?,
         certainty: CertaintyJson::of(&alignment.certainty),
-        crs: input.city.crs.as_ref().map(CrsJson::of),
+        crs: input.city.crs.as_ref(),
         origin: to_raw_value(&alignment.origin.as_slice())?,
         center: to_raw_value(&alignment.center.coords.as_slice())?,
         radius: alignment.radius,
@@ -96,7 +96,7 @@ struct AlignmentJson<'a> {
     alternatives: Vec<AlternativeJson<'a>>,
     certainty: CertaintyJson,
     /// Of city coordinates; null where neither the files nor the user say it.
-    crs: Option<CrsJson<'a>>,
+    crs: Option<&'a Crs>,
     origin: Box<RawValue>,
     /// What `covariance` is about.
     center: Box<RawValue>,
@@ -115,19 +115,6 @@ struct AlignmentJson<'a> {
     warnings: &'a [String],
     input: &'a InputSummary,
     program: &'static str,
-}
-
-#[derive(Serialize)]
-pub(super) struct CrsJson<'a> {
-    text: &'a str,
-    epsg: Option<u32>,
-    vertical: Option<&'a str>,
-}
-
-impl CrsJson<'_> {
-    pub(super) fn of(crs: &Crs) -> CrsJson<'_> {
-        CrsJson { text: &crs.text, epsg: crs.epsg, vertical: crs.vertical.as_deref() }
-    }
 }
 
 #[derive(Serialize)]

@@ -258,6 +258,8 @@ fn crs(header: &las::Header) -> Option<LasCrs> {
     let (projected, geographic) = (number(PROJECTED_KEY), number(GEOGRAPHIC_KEY));
     let understood = WktCrs {
         epsg: projected.or(geographic).map(u32::from),
+        compound_epsg: None,
+        vertical_epsg: None,
         is_geographic: projected.is_none() && geographic.is_some() && unit(UNIT_KEY).is_none(),
         horizontal: unit(UNIT_KEY),
         vertical: unit(VERTICAL_UNIT_KEY),

@@ -10,6 +10,7 @@
 //! memory is taken for them. `json_kind` tells which of the program's own JSON files a text is; `escape` shows text from files safely on a terminal.
 
 mod alignment;
+pub mod crs;
 pub mod cityjson;
 pub mod bundler;
 pub mod citygml;

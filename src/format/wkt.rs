@@ -5,6 +5,9 @@
 pub struct WktCrs {
     /// EPSG code of the projected system, or else of the geographic one.
     pub epsg: Option<u32>,
+    /// ... of a compound system as a whole, and of its heights.
+    pub compound_epsg: Option<u32>,
+    pub vertical_epsg: Option<u32>,
     /// True where coordinates are latitude and longitude.
     pub is_geographic: bool,
     pub horizontal: Option<WktUnit>,
@@ -21,16 +24,26 @@ pub struct WktUnit {
 /// Keywords of either version.
 const PROJECTED: [&str; 3] = ["PROJCS[", "PROJCRS[", "PROJECTEDCRS["];
 const GEOGRAPHIC: [&str; 4] = ["GEOGCS[", "GEOGCRS[", "GEODCRS[", "GEOGRAPHICCRS["];
+const GEOCENTRIC: [&str; 1] = ["GEOCCS["];
+const COMPOUND: [&str; 2] = ["COMPD_CS[", "COMPOUNDCRS["];
+const BOUND: [&str; 1] = ["BOUNDCRS["];
 const VERTICAL: [&str; 3] = ["VERT_CS[", "VERTCRS[", "VERTICALCRS["];
 const UNITS: [&str; 2] = ["UNIT[", "LENGTHUNIT["];
 const CODES: [&str; 2] = ["AUTHORITY[", "ID["];
 
+/// Whether a text is one, by how it begins.
+pub fn is_wkt(text: &str) -> bool {
+    let systems = [&PROJECTED[..], &GEOGRAPHIC, &GEOCENTRIC, &COMPOUND, &BOUND];
+    systems.iter().any(|keywords| keywords.iter().any(|keyword| text.starts_with(keyword)))
+}
+
 pub fn wkt_crs(text: &str) -> WktCrs {
-    let projected = PROJECTED.iter().find_map(|keyword| inside(text, keyword));
-    let geographic = GEOGRAPHIC.iter().find_map(|keyword| inside(text, keyword));
-    let vertical = VERTICAL.iter().find_map(|keyword| inside(text, keyword));
+    let first = |keywords: &[&str]| keywords.iter().find_map(|keyword| inside(text, keyword));
+    let (projected, geographic, vertical) = (first(&PROJECTED), first(&GEOGRAPHIC), first(&VERTICAL));
     WktCrs {
-        epsg: projected.or(geographic).and_then(code),
+        epsg: projected.or(geographic).or(first(&GEOCENTRIC)).and_then(code),
+        compound_epsg: first(&COMPOUND).and_then(code),
+        vertical_epsg: vertical.and_then(code),
         is_geographic: projected.is_none() && geographic.is_some(),
         horizontal: projected.and_then(unit),
         vertical: vertical.and_then(unit),

@@ -56,7 +56,7 @@ impl PixelMap {
         [o.x_px * self.scale[0] + self.shift[0], o.y_px * self.scale[1] + self.shift[1]]
     }
 
-    /// Keypoints (index in `a`, index in `b`) that are each other's nearest within the tolerance; `keep` says which count.
+    /// Pairs of keypoints (index in `a`, index in `b`): of all in `b` whose nearest in `a` is this one, within the tolerance, the nearest; `keep` says which count.
     pub fn same_keypoints(
         &self,
         a: &[Observation],
@@ -68,7 +68,7 @@ impl PixelMap {
         for (index, o) in a.iter().enumerate().filter(|(_, o)| keep(o)) {
             grid.entry(cell(o.x_px, o.y_px)).or_default().push(index as u32);
         }
-        // For each of a the nearest of b, and only if that one's nearest it is.
+        // For each of a the nearest of those in b whose nearest it is.
         let mut nearest_b: HashMap<u32, (f64, u32)> = HashMap::new();
         for (index, o) in b.iter().enumerate().filter(|(_, o)| keep(o)) {
             let [x, y] = self.carried(o);

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::{CloudCrs, LasPacking, Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind};
+use super::{LasPacking, Reconstruction, ReconstructionError, ReconstructionWarning, SfmFormat, WarningKind};
+use crate::format::crs::Crs;
 use crate::format::e57::E57Cloud;
 use crate::format::las::{LasCloud, LasCrs};
 use crate::format::wkt::WktUnit;
@@ -30,7 +31,7 @@ pub(super) fn of_las(path: &Path, mut cloud: LasCloud) -> Result<Reconstruction,
         (false, false) => LasPacking::Las,
     };
     let LasCloud { version, positions, colors, fields, crs, .. } = cloud;
-    let crs = crs.map(|crs| CloudCrs { epsg: crs.understood.epsg, text: crs.text });
+    let crs = crs.map(|crs| Crs::understood(&crs.text));
     let format = SfmFormat::Las { version, packing };
     with_points(path, positions, Reconstruction { format, crs, colors, fields, warnings, ..Reconstruction::default() })
 }
@@ -52,7 +53,7 @@ pub(super) fn of_e57(path: &Path, cloud: E57Cloud) -> Result<Reconstruction, Rec
     let E57Cloud { positions, colors, fields, crs, .. } = cloud;
     let understood = crs.as_deref().map(crate::format::wkt::wkt_crs);
     warnings.extend(understood.as_ref().and_then(|crs| unit_warning(crs.horizontal.as_ref())));
-    let crs = crs.map(|text| CloudCrs { epsg: understood.and_then(|crs| crs.epsg), text });
+    let crs = crs.as_deref().map(Crs::understood);
     let format = SfmFormat::E57;
     with_points(path, positions, Reconstruction { format, crs, colors, fields, warnings, ..Reconstruction::default() })
 }

@@ -28,8 +28,8 @@ mod warning;
 
 pub use consistency::PoseReading;
 pub use model::{
-    CameraIndex, CloudCrs, ColmapParts, Image, ImageIndex, KnownPositions, LasPacking, Observation, PointIndex,
-    Reconstruction, SfmFormat, Sight,
+    CameraIndex, ColmapParts, Image, ImageIndex, KnownPositions, LasPacking, Observation, PointIndex, Reconstruction,
+    SfmFormat, Sight,
 };
 pub use names::{AmbiguousName, NameIndex, NameMatch, match_names};
 pub use read::{ReconstructionError, read_reconstruction};

@@ -2,6 +2,7 @@
 
 use super::warning::ReconstructionWarning;
 use crate::format::colmap::{Encoding, FrameRecord, RigRecord};
+use crate::format::crs::Crs;
 use crate::format::ply::CloudField;
 use crate::geometry::{Camera, Point3, Rotation3, Vector3};
 
@@ -23,7 +24,7 @@ pub struct Reconstruction {
     /// What it was read from.
     pub format: SfmFormat,
     /// The coordinate reference system that the file names, as it names it.
-    pub crs: Option<CloudCrs>,
+    pub crs: Option<Crs>,
     pub cameras: Vec<Camera>,
     /// COLMAP's ids, one per camera.
     pub camera_ids: Vec<u32>,
@@ -115,15 +116,6 @@ pub struct KnownPositions {
     pub reference_lla: Option<[f64; 3]>,
     /// East, north, up in metres, one for each image.
     pub of_images: Vec<Option<[f64; 3]>>,
-}
-
-/// A coordinate reference system as a cloud's file names it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CloudCrs {
-    /// WKT, or a list of GeoTIFF keys.
-    pub text: String,
-    /// The code of the projected (or else the geographic) system, where the file has it.
-    pub epsg: Option<u32>,
 }
 
 /// Whether tracks tell who saw a point.

@@ -3,10 +3,10 @@ use crate::format::wkt::WktCrs;
 
 fn las(units: [Option<(&str, f64)>; 2], is_geographic: bool) -> LasCloud {
     let [horizontal, vertical] = units.map(|unit| unit.map(|(name, metres)| WktUnit { name: name.into(), metres }));
-    let understood = WktCrs { epsg: Some(2994), is_geographic, horizontal, vertical };
+    let understood = WktCrs { epsg: Some(2994), is_geographic, horizontal, vertical, ..WktCrs::default() };
     LasCloud {
         positions: vec![[10.0, 20.0, 30.0], [11.0, 20.0, 60.0]],
-        crs: Some(LasCrs { text: "text".into(), understood }),
+        crs: Some(LasCrs { text: "EPSG:2994".into(), understood }),
         ..LasCloud::default()
     }
 }
@@ -19,7 +19,7 @@ fn read(cloud: LasCloud) -> Result<Reconstruction, ReconstructionError> {
 fn metres_are_nothing_to_tell_and_feet_are() {
     let metres = read(las([Some(("metre", 1.0)), Some(("m", 1.0))], false)).unwrap();
     assert_eq!(metres.warnings, []);
-    assert_eq!(metres.crs, Some(CloudCrs { text: "text".into(), epsg: Some(2994) }));
+    assert_eq!(metres.crs, Some(Crs { text: "EPSG:2994".into(), epsg: Some(2994), vertical: None }));
     let feet = read(las([Some(("US survey foot", 0.304800609)), None], false)).unwrap();
     let told = feet.warnings[0].to_string();
     assert!(feet.warnings.len() == 1 && told.contains("us survey feet") && told.contains("0.3048"), "{told}");

@@ -1,7 +1,11 @@
 //! Reference systems as files spell them.
 
+use serde::Serialize;
+
+use super::wkt::{is_wkt, wkt_crs};
+
 /// A reference system: what the file says, and what is understood of it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Crs {
     /// As the file, or the user, spells it.
     pub text: String,
@@ -79,7 +83,7 @@ impl Crs {
     }
 
     /// Whether the first coordinate is the longitude, as in CRS84 and unlike the EPSG codes of degrees.
-    pub(super) fn is_longitude_first(&self) -> bool {
+    pub fn is_longitude_first(&self) -> bool {
         plain(&self.text).ends_with("crs84")
     }
 }
@@ -114,44 +118,13 @@ fn code(digits: &str) -> Option<u32> {
     digits.parse().ok().filter(|code| CODES.contains(code))
 }
 
-fn is_wkt(text: &str) -> bool {
-    const BEGINNINGS: [&str; 10] = [
-        "PROJCS[",
-        "COMPD_CS[",
-        "GEOGCS[",
-        "GEOCCS[",
-        "PROJCRS[",
-        "COMPOUNDCRS[",
-        "GEOGCRS[",
-        "GEODCRS[",
-        "BOUNDCRS[",
-        "PROJECTEDCRS[",
-    ];
-    BEGINNINGS.iter().any(|beginning| text.starts_with(beginning))
-}
-
-/// The authority's codes of a whole WKT text, else of its first members: a compound system names its two parts.
+/// Of a compound system as a whole, else of its two parts.
 fn codes_of_wkt(text: &str) -> Vec<u32> {
-    let (mut depth, mut found) = (0_usize, Vec::new());
-    for (at, c) in text.char_indices() {
-        match c {
-            '[' => depth += 1,
-            ']' => depth = depth.saturating_sub(1),
-            _ => continue,
-        }
-        let keyword = &text[..at];
-        if c == '[' && (keyword.ends_with("AUTHORITY") || keyword.ends_with("ID")) {
-            let inside = text[at + 1..].split(']').next().unwrap_or_default();
-            let code =
-                inside.rsplit(',').next().and_then(|last| code(last.trim_matches(|c: char| c == '"' || c == ' ')));
-            found.extend(code.filter(|_| inside.contains("EPSG")).map(|code| (depth, code)));
-        }
+    let understood = wkt_crs(text);
+    match understood.compound_epsg {
+        Some(whole) => vec![whole],
+        None => understood.epsg.into_iter().chain(understood.vertical_epsg).collect(),
     }
-    // The keyword's own bracket and the authority's.
-    const OWN: usize = 2;
-    let at_depth = |depth: usize| found.iter().filter(move |found| found.0 == depth).map(|found| found.1);
-    let own: Vec<u32> = at_depth(OWN).take(1).collect();
-    if own.is_empty() { at_depth(OWN + 1).take(2).collect() } else { own }
 }
 
 /// Letters and digits alone, in lower case.

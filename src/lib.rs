@@ -43,6 +43,7 @@ pub mod problem;
 mod robust;
 mod planes;
 mod georeference;
+mod place_search;
 mod correspondence;
 mod evidence;
 mod uncertainty;
@@ -148,7 +149,8 @@ pub mod internals {
     pub use crate::format::colmap::{Encoding, RigRecord};
     pub use crate::limits::*;
     pub use crate::merging::MergeLimits;
-    pub use crate::planes::{CityPlanes, PlaneId, Upright, city_planes, patches};
+    pub use crate::planes::{CityPlanes, PlaneId, Patches, UpChoice, Upright, choose_up, city_planes, patches, up_of_cameras};
+    pub use crate::place_search::{Disc, HeadingPrior, PlaceCandidate, PlaceObstacle, PlacePrior, PlaceSearch, search_places};
     pub use crate::reconstruction::WarningKind;
     pub use crate::robust::{Matrix7, Motion, MotionParameters, NormalEquations, Problem, Random, tukey_weight};
 }

@@ -19,6 +19,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robust", &["geometry", "random", "solvers"]),
     ("planes", &["limits", "geometry", "city", "reconstruction", "imagery", "robust"]),
     ("georeference", &["limits", "geometry", "format", "city", "reconstruction", "robust", "planes"]),
+    ("place_search", &["limits", "observer", "geometry", "robust", "planes"]),
     ("correspondence", &["limits", "observer", "geometry", "city", "planes", "solvers", "robust"]),
     ("evidence", &["limits", "geometry", "planes", "correspondence"]),
     ("uncertainty", &["limits", "geometry", "city", "planes", "correspondence", "robust"]),

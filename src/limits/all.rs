@@ -2,7 +2,7 @@
 
 use super::{
     EvidenceLimits, FacetVisibilityLimits, LineSearchLimits, NullPoseLimits, OcclusionLimits, PatchLimits,
-    RefinementLimits, SearchLimits, UncertaintyLimits, UpLimits, VerdictLimits,
+    PlaceSearchLimits, RefinementLimits, SearchLimits, UncertaintyLimits, UpLimits, VerdictLimits,
 };
 
 /// The numbers that decide.
@@ -41,6 +41,7 @@ pub struct Limits {
     pub facet_visibility: FacetVisibilityLimits,
     pub patches: PatchLimits,
     pub up: UpLimits,
+    pub place_search: PlaceSearchLimits,
     pub search: SearchLimits,
     pub refinement: RefinementLimits,
     pub line_search: LineSearchLimits,
@@ -68,6 +69,7 @@ impl Default for Limits {
             facet_visibility: FacetVisibilityLimits::default(),
             patches: PatchLimits::default(),
             up: UpLimits::default(),
+            place_search: PlaceSearchLimits::default(),
             search: SearchLimits::default(),
             refinement: RefinementLimits::default(),
             line_search: LineSearchLimits::default(),

@@ -7,6 +7,7 @@
 mod all;
 mod evidence;
 mod patches;
+mod place_search;
 mod refinement;
 mod search;
 mod uncertainty;
@@ -16,6 +17,7 @@ mod visibility;
 pub use all::Limits;
 pub use evidence::{EvidenceLimits, NullPoseLimits};
 pub use patches::{PatchLimits, UpErrorModel, UpLimits};
+pub use place_search::PlaceSearchLimits;
 pub use refinement::{LineSearchLimits, OcclusionLimits, RefinementLimits, StageLimits};
 pub use search::SearchLimits;
 pub use uncertainty::UncertaintyLimits;

@@ -31,6 +31,6 @@ pub use directions::Facing;
 pub use facet_grid::{FacetGrid, Look};
 pub use fit::{FittedPlane, fit_plane_robustly};
 pub use hit::{Hit, OrientedPoint};
-pub use patches::{Patches, patches};
+pub use patches::{Patch, Patches, patches};
 pub use prepared_city::PreparedCity;
 pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start, up_of_cameras};

@@ -1,0 +1,262 @@
+//! The scan: every pose that lays a strong wall of the cloud on a wall of the city.
+//!
+//! Question     at which poses do more walls of the cloud meet walls of the city than by chance?
+//! Method       one wall tied to another gives the heading and one offset; scale and the slide along the wall are stepped through. The
+//!              strongest other walls are looked up first, and few poses get past them.
+//!                  z = sum W (hit - p) / sqrt(sum W^2 p (1 - p) + 1)
+//!              hit: share of three places of a wall that meet one of its direction, side and height; p: how often chance does;
+//!              the 1 keeps thin evidence small
+//! Cost         0.2 microseconds a pose; linear in the walls of the city
+
+use rayon::prelude::*;
+
+use super::blocks::CELL_M;
+use super::city_walls::CityWall;
+use super::cloud_walls::{CloudWall, CloudWalls};
+use super::poses::{PlanPose, ScoredPose, distinct};
+use super::prior::{PlacePrior, wrapped};
+use super::raster::{CLASSES, Question, Raster, angle, class_of, height_code};
+use super::scales::weight;
+use crate::limits::PlaceSearchLimits;
+use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
+
+/// Places of a wall that are looked up, as shares of its length; the middle one first.
+const PLACES: [f64; 3] = [0.5, 1.0 / 6.0, 5.0 / 6.0];
+/// City walls of one block of work, and blocks between two reports.
+const BLOCK: usize = 16;
+const ROUND: usize = 64;
+/// A block's list is cut back when it has grown to so many times what is kept.
+const SLACK: usize = 8;
+/// Poses that are no better than this are chance whatever the others are.
+const LEAST_Z: f64 = 2.0;
+
+/// What the scan goes through.
+pub struct Scan<'a> {
+    pub raster: &'a Raster,
+    pub city: &'a [CityWall],
+    pub cloud: &'a CloudWalls,
+    pub scales: &'a [f64],
+    pub prior: &'a PlacePrior,
+    pub limits: &'a PlaceSearchLimits,
+}
+
+/// The best poses at distinct places, and how many were looked at.
+pub struct Scanned {
+    pub poses: Vec<ScoredPose>,
+    pub count: u64,
+}
+
+impl Scan<'_> {
+    pub fn run(&self, anchors: &[usize], observer: &dyn Observer) -> Result<Scanned, Cancelled> {
+        let tied: Vec<Tied> = anchors.iter().map(|&anchor| Tied::new(self, anchor)).collect();
+        let long: Vec<&CityWall> = self.city.iter().filter(|w| w.length_m() >= self.limits.least_tied_m).collect();
+        let blocks: Vec<&[&CityWall]> = long.chunks(BLOCK).collect();
+        let mut all = Scanned { poses: Vec::new(), count: 0 };
+        for (round, some) in blocks.chunks(ROUND).enumerate() {
+            check_cancelled(observer)?;
+            observer.progress(Stage::Search, (round * ROUND * BLOCK).min(long.len()), long.len());
+            let found: Vec<Scanned> = some.par_iter().map(|walls| self.block(walls, &tied)).collect();
+            for scanned in found {
+                all.count += scanned.count;
+                all.poses.extend(scanned.poses);
+            }
+        }
+        all.poses = self.distinct(all.poses);
+        Ok(all)
+    }
+
+    fn distinct(&self, poses: Vec<ScoredPose>) -> Vec<ScoredPose> {
+        distinct(poses, self.limits.keep, self.limits.apart_m, self.cloud.radius)
+    }
+
+    fn block(&self, walls: &[&CityWall], tied: &[Tied]) -> Scanned {
+        let mut best = Best { poses: Vec::with_capacity(SLACK * self.limits.keep), least_z: LEAST_Z, count: 0 };
+        let mut laid = Laid::default();
+        for wall in walls {
+            for tied in tied {
+                for turn in tied.turns() {
+                    self.along(wall, tied, turn, &mut laid, &mut best);
+                }
+            }
+        }
+        Scanned { poses: self.distinct(best.poses), count: best.count }
+    }
+
+    /// All scales and slides of one wall of the cloud on one of the city.
+    fn along(&self, wall: &CityWall, tied: &Tied, turn: f64, laid: &mut Laid, best: &mut Best) {
+        let heading_rad = wrapped(angle(wall.normal) - tied.anchor.azimuth() + turn);
+        if !self.may_head(heading_rad) {
+            return;
+        }
+        laid.lay(tied, heading_rad, &self.raster.chance);
+        let tallest = (wall.height_m() + self.limits.overshoot_m) / tied.anchor.height();
+        let slides = (wall.length_m() / self.limits.step_m).ceil();
+        let anchor = PlanPose { center: [0.0; 2], heading_rad, scale: 1.0 }.turned(tied.anchor.middle);
+        for (step, &scale) in self.scales.iter().enumerate() {
+            if scale > tallest {
+                break;
+            }
+            laid.at_scale(scale, tied, step);
+            for slide in 0..slides as usize {
+                let at = wall.at((slide as f64 + 0.5) / slides * wall.length_m());
+                let center = [0, 1].map(|k| at[k] - scale * anchor[k]);
+                if self.prior.near.is_some_and(|disc| !disc.holds(center)) {
+                    continue;
+                }
+                best.count += 1;
+                if let Some(z) = self.z(at, laid, tied.at(step)).filter(|z| *z > best.least_z) {
+                    best.poses.push(ScoredPose { pose: PlanPose { center, heading_rad, scale }, z });
+                }
+            }
+        }
+        if best.poses.len() > (SLACK - 1) * self.limits.keep {
+            let kept = self.distinct(std::mem::take(&mut best.poses));
+            if kept.len() == self.limits.keep {
+                best.least_z = kept.last().map_or(best.least_z, |last| last.z);
+            }
+            best.poses.reserve(SLACK * self.limits.keep);
+            best.poses.extend(kept);
+        }
+    }
+
+    fn may_head(&self, heading_rad: f64) -> bool {
+        let expected = self.prior.heading_of_level(&self.cloud.level_from_sfm.rotation);
+        expected.is_none_or(|[at, within]| wrapped(heading_rad - at).abs() <= within)
+    }
+
+    /// The score of a pose that has the anchor's middle at a place; `None` where the first walls deny it.
+    #[inline]
+    fn z(&self, at: [f64; 2], laid: &Laid, step: StepOf) -> Option<f64> {
+        let [x, y] = [0, 1].map(|k| (at[k] - self.raster.low[k]) / CELL_M);
+        let meets = |wall: usize, place: usize| {
+            let [dx, dy] = laid.scaled[wall][place];
+            let question = Question { classes: laid.classes[wall], height: step.heights[wall] };
+            self.raster.answers(x + dx, y + dy, question)
+        };
+        let first = self.limits.looked_at_first.min(step.weights.len());
+        let mut met = 0.0;
+        for wall in 0..first {
+            met += if meets(wall, 0) { step.weights[wall] } else { 0.0 };
+        }
+        if met == 0.0 {
+            return None;
+        }
+        for wall in 0..first {
+            let ends = u8::from(meets(wall, 1)) + u8::from(meets(wall, 2));
+            met += f64::from(ends) * step.weights[wall];
+        }
+        if met < step.least_met {
+            return None;
+        }
+        for wall in first..step.weights.len() {
+            let places = u8::from(meets(wall, 0)) + u8::from(meets(wall, 1)) + u8::from(meets(wall, 2));
+            met += f64::from(places) * step.weights[wall];
+        }
+        Some((met / PLACES.len() as f64 - laid.mean) * laid.per_sigma)
+    }
+}
+
+/// What a block has found.
+struct Best {
+    poses: Vec<ScoredPose>,
+    least_z: f64,
+    count: u64,
+}
+
+/// A wall of the cloud that poses are tied to, the others, and what they weigh at each scale.
+struct Tied {
+    anchor: CloudWall,
+    others: Vec<CloudWall>,
+    /// Step by step.
+    weights: Vec<f64>,
+    heights: Vec<u64>,
+    /// For each step what the walls that are looked at first must meet, in thirds of a wall.
+    least_met: Vec<f64>,
+}
+
+/// The part of a [`Tied`] that belongs to one scale.
+#[derive(Clone, Copy)]
+struct StepOf<'a> {
+    weights: &'a [f64],
+    heights: &'a [u64],
+    least_met: f64,
+}
+
+impl Tied {
+    fn new(scan: &Scan, anchor: usize) -> Tied {
+        let (limits, walls) = (scan.limits, &scan.cloud.walls);
+        let strong = walls.iter().enumerate().filter(|(number, _)| *number != anchor).map(|(_, wall)| *wall);
+        let others: Vec<CloudWall> = strong.take(limits.most_walls).collect();
+        let each = || scan.scales.iter().flat_map(|&scale| others.iter().map(move |wall| (wall, scale)));
+        let weights: Vec<f64> = each().map(|(wall, scale)| weight(wall, scale, limits)).collect();
+        let heights = each().map(|(wall, scale)| height_code(wall.height() * scale - limits.overshoot_m)).collect();
+        let first = |of_step: &[f64]| of_step.iter().take(limits.looked_at_first).sum::<f64>();
+        let least = |of_step: &[f64]| limits.least_share * PLACES.len() as f64 * first(of_step);
+        let least_met = weights.chunks(others.len().max(1)).map(least).collect();
+        Tied { anchor: walls[anchor], weights, heights, least_met, others }
+    }
+
+    /// Both headings where the side is not known.
+    fn turns(&self) -> impl Iterator<Item = f64> + use<> {
+        [0.0, std::f64::consts::PI].into_iter().take(if self.anchor.sided { 1 } else { 2 })
+    }
+
+    fn at(&self, step: usize) -> StepOf<'_> {
+        let range = step * self.others.len()..(step + 1) * self.others.len();
+        StepOf {
+            weights: &self.weights[range.clone()],
+            heights: &self.heights[range],
+            least_met: self.least_met[step],
+        }
+    }
+}
+
+/// The other walls as they lie about the anchor's middle under a heading, and then a scale; kept from pose to pose.
+#[derive(Default)]
+struct Laid {
+    /// Cells for each sfm unit.
+    offsets: Vec<[[f64; 2]; 3]>,
+    /// Cells.
+    scaled: Vec<[[f64; 2]; 3]>,
+    classes: Vec<u64>,
+    chance: Vec<f64>,
+    mean: f64,
+    per_sigma: f64,
+}
+
+impl Laid {
+    fn lay(&mut self, tied: &Tied, heading_rad: f64, chance: &[f64; CLASSES]) {
+        let turn = PlanPose { center: [0.0; 2], heading_rad, scale: 1.0 };
+        self.offsets.clear();
+        self.classes.clear();
+        self.chance.clear();
+        for wall in &tied.others {
+            self.offsets.push(PLACES.map(|share| {
+                let at = wall.at(share);
+                turn.turned([0, 1].map(|k| (at[k] - tied.anchor.middle[k]) / CELL_M))
+            }));
+            let class = class_of(wall.azimuth() + heading_rad);
+            let behind = (class + CLASSES / 2) % CLASSES;
+            let (bits, p) = if wall.sided {
+                (1 << class, chance[class])
+            } else {
+                (1 << class | 1 << behind, chance[class] + chance[behind])
+            };
+            self.classes.push(bits);
+            self.chance.push(p);
+        }
+        self.scaled.resize(self.offsets.len(), [[0.0; 2]; 3]);
+    }
+
+    fn at_scale(&mut self, scale: f64, tied: &Tied, step: usize) {
+        for (scaled, offset) in self.scaled.iter_mut().zip(&self.offsets) {
+            *scaled = offset.map(|place| place.map(|c| c * scale));
+        }
+        let (mut mean, mut variance) = (0.0, 1.0);
+        for (weight, p) in tied.at(step).weights.iter().zip(&self.chance) {
+            mean += weight * p;
+            variance += weight * weight * p * (1.0 - p);
+        }
+        (self.mean, self.per_sigma) = (mean, 1.0 / f64::sqrt(variance));
+    }
+}

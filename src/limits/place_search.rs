@@ -31,6 +31,8 @@ pub struct PlaceSearchLimits {
     pub least_height_m: f64,
     /// Share of the city's walls that are no taller than the tallest that a scale may make of it. Chosen.
     pub tallest_share: f64,
+    /// A reconstruction is no wider than this, metres of radius. Chosen: a quarter of a town.
+    pub most_radius_m: f64,
     /// Eaves, plinths and levels of detail: by so much what was seen may stand over its wall, metres. Chosen.
     pub overshoot_m: f64,
     /// Gates of the plan's least squares, metres, one step each.
@@ -74,6 +76,7 @@ impl Default for PlaceSearchLimits {
             apart_m: 2.0,
             least_height_m: 2.0,
             tallest_share: 0.99,
+            most_radius_m: 500.0,
             overshoot_m: 1.0,
             gates_m: &[2.0, 1.6, 1.3, 1.0, 0.8, 0.6, 0.5],
             sights: 150,

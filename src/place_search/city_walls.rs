@@ -10,6 +10,7 @@ use super::prior::Disc;
 use crate::geometry::Vector3;
 use crate::limits::Limits;
 use crate::planes::{CityPlane, PreparedCity};
+use crate::robust::quantile;
 
 /// A stretch of wall; city frame (local), metres.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +68,14 @@ pub fn city_walls(city: &PreparedCity, within: Option<&Disc>, limits: &Limits) -
     };
     let by_plane: Vec<Vec<CityWall>> = planes.par_iter().map(of_plane).collect();
     by_plane.into_iter().flatten().collect()
+}
+
+/// The height that this share of the city's upright planes does not exceed, metres, seen or not.
+pub fn tallest_m(city: &PreparedCity, within: Option<&Disc>, share: f64, limits: &Limits) -> Option<f64> {
+    let upright = |plane: &&CityPlane| plane.plane.normal.z.abs() < limits.upright_sin;
+    let inside = |plane: &&CityPlane| within.is_none_or(|disc| disc.meets_box(&plane.low, &plane.high));
+    let planes = city.planes().planes.iter().filter(upright).filter(inside);
+    quantile(&mut planes.map(|plane| plane.high.z - plane.low.z).collect::<Vec<f64>>(), share)
 }
 
 /// A piece of a wall: along it, and in height.

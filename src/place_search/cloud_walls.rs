@@ -20,6 +20,8 @@ pub struct CloudWall {
     pub normal: [f64; 2],
     pub sided: bool,
     pub length: f64,
+    /// Of all walls in its line, itself included: they lie on a wall of the city together or not at all.
+    pub line_length: f64,
     pub bottom: f64,
     pub top: f64,
     pub points: usize,
@@ -30,6 +32,10 @@ impl CloudWall {
         self.top - self.bottom
     }
 
+    pub fn azimuth(&self) -> f64 {
+        angle(self.normal)
+    }
+
     pub fn along(&self) -> [f64; 2] {
         [-self.normal[1], self.normal[0]]
     }
@@ -37,6 +43,11 @@ impl CloudWall {
     /// The place at a share of the length, 0 to 1.
     pub fn at(&self, share: f64) -> [f64; 2] {
         [0, 1].map(|k| self.middle[k] + (share - 0.5) * self.length * self.along()[k])
+    }
+
+    fn is_in_line(&self, other: &CloudWall, across: f64) -> bool {
+        let off: f64 = (0..2).map(|k| (other.middle[k] - self.middle[k]) * self.normal[k]).sum();
+        is_parallel(self, other, SAME_NORMAL_DEG) && off.abs() <= across
     }
 
     /// How firmly it ties a pose: a long wall tells the heading, many points that it is there.
@@ -61,6 +72,8 @@ const SAME_NORMAL_DEG: f64 = 10.0;
 const ACROSS_NOISES: f64 = 3.0;
 const ACROSS_SHARE: f64 = 0.004;
 const GAP_SHARE: f64 = 0.05;
+/// Walls of one street front step by this share of the cloud's radius and are in one line. Chosen.
+const LINE_SHARE: f64 = 0.01;
 /// Points beyond this share at either end of a wall are strays.
 const STRAY_SHARE: f64 = 0.03;
 
@@ -93,7 +106,19 @@ impl CloudWalls {
         }
         let mut walls: Vec<CloudWall> = growing.iter().filter_map(Growing::wall).collect();
         walls.sort_by(|a, b| b.strength(radius).total_cmp(&a.strength(radius)));
+        let in_line = |wall: &CloudWall| {
+            let others = walls.iter().filter(|other| wall.is_in_line(other, across + LINE_SHARE * radius));
+            others.map(|other| other.length).sum::<f64>()
+        };
+        let line_lengths: Vec<f64> = walls.iter().map(in_line).collect();
+        walls.iter_mut().zip(line_lengths).for_each(|(wall, length)| wall.line_length = length);
         CloudWalls { level_from_sfm, walls, radius }
+    }
+
+    /// How far from the middle walls reach, in plan.
+    pub fn reach(&self) -> f64 {
+        let ends = self.walls.iter().flat_map(|wall| [wall.at(0.0), wall.at(1.0)]);
+        ends.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max)
     }
 
     /// The numbers of the walls that poses are tied to: the strongest, at most half of them (one at least) of one direction.
@@ -133,9 +158,8 @@ impl Growing {
             let of = points.iter().map(|p| p.x * axis[0] + p.y * axis[1]);
             of.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
         };
-        let mean = |points: &[Point3<f64>]| {
-            points.iter().map(|p| p.x * n[0] + p.y * n[1]).sum::<f64>() / points.len() as f64
-        };
+        let mean =
+            |points: &[Point3<f64>]| points.iter().map(|p| p.x * n[0] + p.y * n[1]).sum::<f64>() / points.len() as f64;
         if (mean(&self.points) - mean(&other.points)).abs() > across {
             return false;
         }
@@ -171,15 +195,10 @@ impl Growing {
             normal,
             sided: self.sided,
             length: to - from,
+            line_length: to - from,
             bottom: quantile(&mut z, STRAY_SHARE)?,
             top: quantile(&mut z, 1.0 - STRAY_SHARE)?,
             points: self.points.len(),
         })
-    }
-}
-
-impl CloudWall {
-    pub fn azimuth(&self) -> f64 {
-        angle(self.normal)
     }
 }

@@ -4,24 +4,21 @@
 //! Method       plan, height, score, sight in that order; the score is the scan's, with how far what was seen and the wall overlap in
 //!              height in the place of a hit, less what lines of sight deny
 
+use super::city_plan::CityPlan;
 use super::city_walls::CityWall;
 use super::cloud_walls::{CloudWall, CloudWalls};
 use super::heights::{HeightVote, stabbed};
 use super::meeting::{PLACES, met};
 use super::poses::PlanPose;
-use super::raster::{CLASSES, class_of};
+use super::raster::{Question, classes_asked, height_code};
 use super::scales::weight;
 use super::sharpen::{class_cos, sharpened};
 use super::sight::Sights;
-use super::wall_index::WallIndex;
 use crate::limits::{Limits, PlaceSearchLimits};
-use crate::planes::PreparedCity;
 
 /// What poses are judged by.
 pub struct Judge<'a> {
-    pub city: &'a PreparedCity,
-    pub index: &'a WallIndex<'a>,
-    pub chance: &'a [f64; CLASSES],
+    pub plan: &'a CityPlan<'a>,
     pub cloud: &'a CloudWalls,
     pub sights: &'a Sights,
     pub limits: &'a Limits,
@@ -51,9 +48,9 @@ impl Judge<'_> {
     /// `None` where no wall tells a height.
     pub fn judged(&self, pose: &PlanPose) -> Option<JudgedPose> {
         let limits = &self.limits.place_search;
-        let pose = sharpened(pose, self.cloud, self.index, limits);
+        let pose = sharpened(pose, self.cloud, &self.plan.index, limits);
         let walls = &self.cloud.walls[..self.cloud.walls.len().min(limits.most_walls)];
-        let met = met(self.index, walls, &pose, limits.near_wall_m, class_cos(limits));
+        let met = met(&self.plan.index, walls, &pose, limits.near_wall_m, class_cos(limits));
         let votes = height_votes(walls, &met, pose.scale, limits);
         let heights_m = stabbed(&votes)?;
         let height_m = (heights_m[0] + heights_m[1]) / 2.0;
@@ -68,18 +65,19 @@ impl Judge<'_> {
             };
             walls.iter().zip(&met).map(share).collect()
         };
-        let blocked = self.sights.blocked(&pose, height_m, self.city, self.limits);
+        let blocked = self.sights.blocked(&pose, height_m, self.plan.city, self.limits);
         let z_plan = self.z(&pose, walls, &hits(&|_, _| 1.0));
         let z = self.z(&pose, walls, &hits(&overlap)) * (1.0 - limits.sight_weight * blocked);
         Some(JudgedPose { pose, heights_m, z_plan, z, blocked })
     }
 
     fn z(&self, pose: &PlanPose, walls: &[CloudWall], hits: &[f64]) -> f64 {
+        let limits = &self.limits.place_search;
         let (mut above, mut variance) = (0.0, 1.0);
         for (wall, hit) in walls.iter().zip(hits) {
-            let class = class_of(wall.azimuth() + pose.heading_rad);
-            let behind = if wall.sided { 0.0 } else { self.chance[(class + CLASSES / 2) % CLASSES] };
-            let (p, w) = (self.chance[class] + behind, weight(wall, pose.scale, &self.limits.place_search));
+            let height = height_code(wall.height() * pose.scale - limits.overshoot_m);
+            let classes = classes_asked(wall.azimuth() + pose.heading_rad, wall.sided);
+            let (p, w) = (self.plan.raster.chance(Question { classes, height }), weight(wall, pose.scale, limits));
             above += w * (hit - p);
             variance += w * w * p * (1.0 - p);
         }

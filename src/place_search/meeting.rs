@@ -26,7 +26,8 @@ pub fn candidates<'i>(
         let cos = city.normal[0] * normal[0] + city.normal[1] * normal[1];
         (if sided { cos } else { cos.abs() }) > min_cos
     };
-    let near = index.near(place).filter(move |city| faces(city));
+    // The cheapest question first: most walls of a block are too far across.
+    let near = index.near(place).filter(move |city| city.across_m(place).abs() <= reach_m && faces(city));
     near.map(move |city| (city, city.distance_m(place))).filter(move |(_, distance)| *distance <= reach_m)
 }
 

@@ -11,6 +11,7 @@
 //! Source       derived here; nothing is drawn at random
 
 mod blocks;
+mod city_plan;
 mod city_walls;
 mod cloud_walls;
 mod heights;
@@ -27,6 +28,7 @@ mod sharpen;
 mod sight;
 mod wall_index;
 
+pub use city_plan::CityPlan;
 pub use outcome::{PlaceCandidate, PlaceObstacle, PlaceSearch};
 pub use prior::{Disc, HeadingPrior, PlacePrior};
-pub use search::search_places;
+pub use search::{search_places, search_plan};

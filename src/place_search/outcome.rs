@@ -23,6 +23,8 @@ pub struct PlaceSearch {
 pub struct PlaceCandidate {
     /// To the city's local frame.
     pub start: Start,
+    /// The up under which it was found.
+    pub upright: Upright,
     /// Walls, heights and lines of sight against chance, in standard deviations of it.
     pub z: f64,
     /// Walls in plan alone.
@@ -51,6 +53,13 @@ impl PlaceSearch {
         PlaceSearch { obstacle: Some(obstacle), ..PlaceSearch::default() }
     }
 
+    /// Keeps those that may be right beside the best, the best first.
+    pub(super) fn keep_comparable(&mut self, share: f64) {
+        self.candidates.sort_by(|a, b| b.z.total_cmp(&a.z));
+        let least = self.candidates.first().map_or(0.0, |best| share * best.z);
+        self.candidates.retain(|candidate| candidate.z >= least);
+    }
+
     /// The size of the space that was searched, as a logarithm to base 2: what evidence for one of its poses has to outweigh.
     pub fn space_bits(&self) -> f64 {
         (self.poses_scanned.max(1) as f64).log2()
@@ -77,22 +86,33 @@ impl PlaceCandidate {
             log_scale: limits.log_scale_sigma,
         };
         let start = Start::new(city_from_level * *level_from_sfm, sigmas).ok()?;
-        Some(PlaceCandidate { start, z: judged.z, z_plan: judged.z_plan, blocked: judged.blocked })
+        Some(PlaceCandidate { start, upright: *upright, z: judged.z, z_plan: judged.z_plan, blocked: judged.blocked })
     }
 }
 
 impl fmt::Display for PlaceObstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            PlaceObstacle::NoWalls => write!(f, "the reconstruction shows no wall, and places are told by walls; give a start"),
+            PlaceObstacle::NoWalls => {
+                write!(f, "the reconstruction shows no wall, and places are told by walls; give a start")
+            }
             PlaceObstacle::TooFewWalls { found, needed } => {
-                write!(f, "the reconstruction shows {found} walls, and {needed} at least tell a place; give a start, or add photographs")
+                write!(
+                    f,
+                    "the reconstruction shows {found} walls, and {needed} at least tell a place; give a start, or add photographs"
+                )
             }
             PlaceObstacle::OneDirection => {
-                write!(f, "all walls of the reconstruction have one direction, along which every place is as good; give a start, or add a photograph round a corner")
+                write!(
+                    f,
+                    "all walls of the reconstruction have one direction, along which every place is as good; give a start, or add a photograph round a corner"
+                )
             }
             PlaceObstacle::NoCityWalls => {
-                write!(f, "the city has no wall that could be seen where the reconstruction may stand; check the place that was given")
+                write!(
+                    f,
+                    "the city has no wall that could be seen where the reconstruction may stand; check the place that was given"
+                )
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! Question     does a wall of this direction and side, as tall as that, stand here; and how often does one by chance?
 //! Method       cells of half a metre, one word each: 36 bits say "a wall of this class of direction (10 degrees, by its outward side) within
-//!              reach", 7 bits the height of the tallest. Chance is the share of cells in streets that hold the bit.
+//!              reach", 7 bits the height of the tallest. Chance is the share of cells in streets that answer so.
 
 use std::f64::consts::TAU;
 
@@ -11,16 +11,16 @@ use super::city_walls::CityWall;
 use crate::limits::PlaceSearchLimits;
 
 /// Classes of direction, 10 degrees each.
-pub const CLASSES: usize = 36;
+const CLASSES: usize = 36;
 /// One step of a cell's height, metres, and the tallest that can be told.
 const HEIGHT_STEP_M: f64 = 1.0;
-const MOST_HEIGHT: u64 = 127;
+const HEIGHTS: usize = 128;
 
 pub struct Raster {
     blocks: Blocks,
     cells: Vec<u64>,
-    /// For each class how often its bit is met by chance.
-    pub chance: [f64; CLASSES],
+    /// For each class and height how often a wall of it, so tall at least, is met by chance.
+    chance: Vec<[f64; HEIGHTS]>,
     pub low: [f64; 2],
 }
 
@@ -36,12 +36,8 @@ pub struct Question {
 impl Raster {
     pub fn new(walls: &[CityWall], limits: &PlaceSearchLimits) -> Raster {
         let blocks = Blocks::around(walls, limits.near_wall_m);
-        let mut raster = Raster {
-            cells: vec![0; blocks.count * CELLS_OF_BLOCK],
-            low: blocks.low,
-            blocks,
-            chance: [0.0; CLASSES],
-        };
+        let mut raster =
+            Raster { cells: vec![0; blocks.count * CELLS_OF_BLOCK], low: blocks.low, blocks, chance: Vec::new() };
         for wall in walls {
             raster.mark(wall, limits);
         }
@@ -67,16 +63,36 @@ impl Raster {
     }
 
     fn count_chance(&mut self, street: &Blocks) {
-        let mut counts = [0u32; CLASSES];
+        let mut counts = vec![[0u32; HEIGHTS]; CLASSES];
         for word in &self.cells {
-            let mut bits = word & CLASS_MASK;
+            let (height, mut bits) = ((word >> CLASSES) as usize, word & CLASS_MASK);
             while bits != 0 {
-                counts[bits.trailing_zeros() as usize] += 1;
+                counts[bits.trailing_zeros() as usize][height] += 1;
                 bits &= bits - 1;
             }
         }
         let cells = (street.area_m2() / (CELL_M * CELL_M)).max(1.0);
-        self.chance = counts.map(|count| f64::from(count) / cells);
+        let at_least = |of_class: &[u32; HEIGHTS]| {
+            let mut taller = 0;
+            let mut chance = of_class.map(f64::from);
+            for (height, count) in of_class.iter().enumerate().rev() {
+                taller += count;
+                chance[height] = f64::from(taller) / cells;
+            }
+            chance
+        };
+        self.chance = counts.iter().map(at_least).collect();
+    }
+
+    /// How often chance answers a question.
+    #[inline]
+    pub fn chance(&self, question: Question) -> f64 {
+        let (mut bits, mut sum) = (question.classes, 0.0);
+        while bits != 0 {
+            sum += self.chance[bits.trailing_zeros() as usize][(question.height >> CLASSES) as usize];
+            bits &= bits - 1;
+        }
+        sum
     }
 
     /// Whether a wall as asked stands at a place, in cells from the lowest corner.
@@ -94,7 +110,7 @@ const CLASS_MASK: u64 = (1 << CLASSES) - 1;
 
 /// A height as cells hold it.
 pub fn height_code(height_m: f64) -> u64 {
-    ((height_m / HEIGHT_STEP_M).max(0.0) as u64).min(MOST_HEIGHT) << CLASSES
+    ((height_m / HEIGHT_STEP_M).max(0.0) as u64).min(HEIGHTS as u64 - 1) << CLASSES
 }
 
 pub fn angle(direction: [f64; 2]) -> f64 {
@@ -102,8 +118,15 @@ pub fn angle(direction: [f64; 2]) -> f64 {
 }
 
 /// The class that an angle falls in.
-pub fn class_of(angle: f64) -> usize {
+fn class_of(angle: f64) -> usize {
     (angle.rem_euclid(TAU) / TAU * CLASSES as f64) as usize % CLASSES
+}
+
+/// The classes that a wall of this outward side asks for; both sides where it is not known.
+pub fn classes_asked(angle: f64, sided: bool) -> u64 {
+    let class = class_of(angle);
+    let behind = (class + CLASSES / 2) % CLASSES;
+    if sided { 1 << class } else { (1 << class) | (1 << behind) }
 }
 
 /// The classes whose middle lies within reach of an angle.
@@ -138,8 +161,11 @@ mod tests {
     fn chance_is_the_share_of_the_street_that_answers() {
         let raster = Raster::new(&[wall()], &PlaceSearchLimits::default());
         // Some 11 x 1.5 m of some 34 x 24 m, in blocks of 8 m.
-        let chance = raster.chance[class_of(-1.55)];
-        assert!(chance > 0.008 && chance < 0.03, "{chance}");
-        assert_eq!(raster.chance[class_of(0.0)], 0.0);
+        let chance = |angle, height_m| {
+            raster.chance(Question { classes: classes_asked(angle, true), height: height_code(height_m) })
+        };
+        assert!(chance(-1.55, 8.0) > 0.008 && chance(-1.55, 8.0) < 0.03, "{}", chance(-1.55, 8.0));
+        assert_eq!(chance(-1.55, 9.0), 0.0);
+        assert_eq!(chance(0.0, 0.0), 0.0);
     }
 }

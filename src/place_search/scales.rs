@@ -1,35 +1,36 @@
 //! The scales that are scanned, and what a wall of the cloud weighs at each.
 
-use super::city_walls::CityWall;
 use super::cloud_walls::{CloudWall, CloudWalls};
 use super::prior::PlacePrior;
 use crate::limits::PlaceSearchLimits;
-use crate::robust::quantile;
 
 /// The tallest wall is sought among so many of the strongest. Chosen: weak ones are often trees.
 const WELL_SEEN: usize = 8;
 
-/// Scales at linear steps of the cloud's radius: the tallest well-seen wall is neither a fence nor taller than the city's.
-pub fn scales(cloud: &CloudWalls, city: &[CityWall], prior: &PlacePrior, limits: &PlaceSearchLimits) -> Vec<f64> {
-    let mut heights: Vec<f64> = city.iter().map(CityWall::height_m).collect();
-    let tallest_m = quantile(&mut heights, limits.tallest_share).unwrap_or(0.0) + limits.overshoot_m;
-    let seen = cloud.walls.iter().take(WELL_SEEN).map(CloudWall::height).fold(0.0, f64::max);
-    let [mut least, mut most] = [limits.least_height_m / seen, tallest_m / seen];
-    if let Some([low, high]) = prior.scale {
-        (least, most) = (least.max(low).min(high), most.min(high).max(low));
+/// The least and the most metres to an sfm unit: the tallest well-seen wall is neither a fence nor taller than the city's.
+pub fn scale_range(cloud: &CloudWalls, tallest_m: f64, prior: &PlacePrior, limits: &PlaceSearchLimits) -> [f64; 2] {
+    let seen = cloud.walls.iter().take(WELL_SEEN).map(CloudWall::height).fold(f64::MIN_POSITIVE, f64::max);
+    let [least, most] = [limits.least_height_m / seen, (tallest_m + limits.overshoot_m) / seen];
+    match prior.scale {
+        // What is known beforehand is believed, whatever the walls.
+        Some(known) => known,
+        None => [least, most.min(limits.most_radius_m / cloud.radius)],
     }
-    let step = limits.step_m / cloud.radius;
-    let count = ((most - least) / step).ceil();
-    if !count.is_finite() || count < 0.0 {
+}
+
+/// Scales at linear steps of the cloud's radius.
+pub fn scale_steps([least, most]: [f64; 2], cloud: &CloudWalls, limits: &PlaceSearchLimits) -> Vec<f64> {
+    let steps = ((most - least) * cloud.radius / limits.step_m).ceil();
+    if !steps.is_finite() || steps < 0.0 {
         return Vec::new();
     }
-    let step = (most - least) / count.max(1.0);
-    (0..=count as usize).map(|k| least + k as f64 * step).take_while(|scale| *scale <= most * 1.0001).collect()
+    (0..=steps as usize).map(|k| least + (most - least) * k as f64 / steps.max(1.0)).collect()
 }
 
 /// How much a wall weighs: the root of the independent looks that its length is worth; less than one look as such, so that a cloud that
-/// shrinks weighs nothing.
+/// shrinks weighs nothing. Walls in one line share the looks of one wall: ground that is taken for a wall under a wrong up is many pieces in a line.
 pub fn weight(wall: &CloudWall, scale: f64, limits: &PlaceSearchLimits) -> f64 {
-    let looks = (wall.length * scale / limits.metres_of_look).min(limits.most_looks);
+    let most = limits.most_looks * wall.length / wall.line_length;
+    let looks = (wall.length * scale / limits.metres_of_look).min(most);
     if looks < 1.0 { looks } else { looks.sqrt() }
 }

@@ -11,11 +11,12 @@
 use rayon::prelude::*;
 
 use super::blocks::CELL_M;
+use super::city_plan::CityPlan;
 use super::city_walls::CityWall;
 use super::cloud_walls::{CloudWall, CloudWalls};
 use super::poses::{PlanPose, ScoredPose, distinct};
 use super::prior::{PlacePrior, wrapped};
-use super::raster::{CLASSES, Question, Raster, angle, class_of, height_code};
+use super::raster::{Question, Raster, angle, classes_asked, height_code};
 use super::scales::weight;
 use crate::limits::PlaceSearchLimits;
 use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
@@ -32,8 +33,7 @@ const LEAST_Z: f64 = 2.0;
 
 /// What the scan goes through.
 pub struct Scan<'a> {
-    pub raster: &'a Raster,
-    pub city: &'a [CityWall],
+    pub plan: &'a CityPlan<'a>,
     pub cloud: &'a CloudWalls,
     pub scales: &'a [f64],
     pub prior: &'a PlacePrior,
@@ -49,7 +49,8 @@ pub struct Scanned {
 impl Scan<'_> {
     pub fn run(&self, anchors: &[usize], observer: &dyn Observer) -> Result<Scanned, Cancelled> {
         let tied: Vec<Tied> = anchors.iter().map(|&anchor| Tied::new(self, anchor)).collect();
-        let long: Vec<&CityWall> = self.city.iter().filter(|w| w.length_m() >= self.limits.least_tied_m).collect();
+        let long: Vec<&CityWall> =
+            self.plan.walls().iter().filter(|w| w.length_m() >= self.limits.least_tied_m).collect();
         let blocks: Vec<&[&CityWall]> = long.chunks(BLOCK).collect();
         let mut all = Scanned { poses: Vec::new(), count: 0 };
         for (round, some) in blocks.chunks(ROUND).enumerate() {
@@ -88,7 +89,7 @@ impl Scan<'_> {
         if !self.may_head(heading_rad) {
             return;
         }
-        laid.lay(tied, heading_rad, &self.raster.chance);
+        laid.lay(tied, heading_rad);
         let tallest = (wall.height_m() + self.limits.overshoot_m) / tied.anchor.height();
         let slides = (wall.length_m() / self.limits.step_m).ceil();
         let anchor = PlanPose { center: [0.0; 2], heading_rad, scale: 1.0 }.turned(tied.anchor.middle);
@@ -96,7 +97,7 @@ impl Scan<'_> {
             if scale > tallest {
                 break;
             }
-            laid.at_scale(scale, tied, step);
+            laid.at_scale(scale, tied.at(step), &self.plan.raster);
             for slide in 0..slides as usize {
                 let at = wall.at((slide as f64 + 0.5) / slides * wall.length_m());
                 let center = [0, 1].map(|k| at[k] - scale * anchor[k]);
@@ -127,11 +128,11 @@ impl Scan<'_> {
     /// The score of a pose that has the anchor's middle at a place; `None` where the first walls deny it.
     #[inline]
     fn z(&self, at: [f64; 2], laid: &Laid, step: StepOf) -> Option<f64> {
-        let [x, y] = [0, 1].map(|k| (at[k] - self.raster.low[k]) / CELL_M);
+        let [x, y] = [0, 1].map(|k| (at[k] - self.plan.raster.low[k]) / CELL_M);
         let meets = |wall: usize, place: usize| {
             let [dx, dy] = laid.scaled[wall][place];
             let question = Question { classes: laid.classes[wall], height: step.heights[wall] };
-            self.raster.answers(x + dx, y + dy, question)
+            self.plan.raster.answers(x + dx, y + dy, question)
         };
         let first = self.limits.looked_at_first.min(step.weights.len());
         let mut met = 0.0;
@@ -203,11 +204,7 @@ impl Tied {
 
     fn at(&self, step: usize) -> StepOf<'_> {
         let range = step * self.others.len()..(step + 1) * self.others.len();
-        StepOf {
-            weights: &self.weights[range.clone()],
-            heights: &self.heights[range],
-            least_met: self.least_met[step],
-        }
+        StepOf { weights: &self.weights[range.clone()], heights: &self.heights[range], least_met: self.least_met[step] }
     }
 }
 
@@ -219,41 +216,32 @@ struct Laid {
     /// Cells.
     scaled: Vec<[[f64; 2]; 3]>,
     classes: Vec<u64>,
-    chance: Vec<f64>,
     mean: f64,
     per_sigma: f64,
 }
 
 impl Laid {
-    fn lay(&mut self, tied: &Tied, heading_rad: f64, chance: &[f64; CLASSES]) {
+    fn lay(&mut self, tied: &Tied, heading_rad: f64) {
         let turn = PlanPose { center: [0.0; 2], heading_rad, scale: 1.0 };
         self.offsets.clear();
         self.classes.clear();
-        self.chance.clear();
         for wall in &tied.others {
             self.offsets.push(PLACES.map(|share| {
                 let at = wall.at(share);
                 turn.turned([0, 1].map(|k| (at[k] - tied.anchor.middle[k]) / CELL_M))
             }));
-            let class = class_of(wall.azimuth() + heading_rad);
-            let behind = (class + CLASSES / 2) % CLASSES;
-            let (bits, p) = if wall.sided {
-                (1 << class, chance[class])
-            } else {
-                (1 << class | 1 << behind, chance[class] + chance[behind])
-            };
-            self.classes.push(bits);
-            self.chance.push(p);
+            self.classes.push(classes_asked(wall.azimuth() + heading_rad, wall.sided));
         }
         self.scaled.resize(self.offsets.len(), [[0.0; 2]; 3]);
     }
 
-    fn at_scale(&mut self, scale: f64, tied: &Tied, step: usize) {
+    fn at_scale(&mut self, scale: f64, step: StepOf, raster: &Raster) {
         for (scaled, offset) in self.scaled.iter_mut().zip(&self.offsets) {
             *scaled = offset.map(|place| place.map(|c| c * scale));
         }
         let (mut mean, mut variance) = (0.0, 1.0);
-        for (weight, p) in tied.at(step).weights.iter().zip(&self.chance) {
+        for ((weight, height), classes) in step.weights.iter().zip(step.heights).zip(&self.classes) {
+            let p = raster.chance(Question { classes: *classes, height: *height });
             mean += weight * p;
             variance += weight * weight * p * (1.0 - p);
         }

@@ -1,66 +1,80 @@
-//! The search on one page: walls of the cloud, walls of the city, raster, scan, sharp poses, starts.
+//! The search on one page: walls of the cloud, plan of the city, scan, sharp poses, starts.
 
 use rayon::prelude::*;
 
-use super::city_walls::city_walls;
+use super::city_plan::CityPlan;
+use super::city_walls::tallest_m;
 use super::cloud_walls::{CloudWalls, is_parallel};
 use super::judged::{Judge, JudgedPose};
 use super::outcome::{PlaceCandidate, PlaceObstacle, PlaceSearch};
 use super::poses::{ScoredPose, distinct};
-use super::prior::PlacePrior;
-use super::raster::Raster;
-use super::scales::scales;
+use super::prior::{Disc, PlacePrior};
+use super::scales::{scale_range, scale_steps};
 use super::scan::Scan;
 use super::sight::Sights;
-use super::wall_index::WallIndex;
 use crate::limits::{Limits, PlaceSearchLimits};
 use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
 use crate::planes::{Patches, PreparedCity, Upright};
 
-/// Finds the places in a city where a reconstruction may stand whose scale, heading and position are unknown, or known in part.
+/// Finds the places in a city where a reconstruction may stand whose scale, heading and position are unknown, or known in part; under each up that
+/// it may have. Who searches for several in one city makes the plan once and asks [`search_plan`].
 pub fn search_places(
     city: &PreparedCity,
     patches: &Patches,
-    upright: &Upright,
+    uprights: &[Upright],
     prior: &PlacePrior,
     limits: &Limits,
     observer: &dyn Observer,
 ) -> Result<PlaceSearch, Cancelled> {
-    let own = &limits.place_search;
-    let cloud = CloudWalls::new(patches, upright, limits);
-    if let Some(obstacle) = obstacle(&cloud, own) {
-        return Ok(PlaceSearch::refused(obstacle));
-    }
+    let views = match views(patches, uprights, limits) {
+        Ok(views) => views,
+        Err(obstacle) => return Ok(PlaceSearch::refused(obstacle)),
+    };
     observer.progress(Stage::City, 0, 0);
-    let walls = city_walls(city, None, limits);
-    if walls.is_empty() {
-        return Ok(PlaceSearch::refused(PlaceObstacle::NoCityWalls));
-    }
+    let within = prior.near.map(|near| reached(&near, city, &views, prior, limits));
+    let plan = CityPlan::new(city, within.as_ref(), limits);
     check_cancelled(observer)?;
-    let raster = Raster::new(&walls, own);
-    let scales = scales(&cloud, &walls, prior, own);
-    let scan = Scan { raster: &raster, city: &walls, cloud: &cloud, scales: &scales, prior, limits: own };
-    let scanned = scan.run(&cloud.anchors(own.anchors, own.one_direction_deg), observer)?;
-    let index = WallIndex::new(&walls, own.gates_m[0]);
-    let sights = Sights::new(patches, &cloud, limits);
-    let judge = Judge { city, index: &index, chance: &raster.chance, cloud: &cloud, sights: &sights, limits };
-    let judged: Vec<JudgedPose> = scanned.poses.par_iter().filter_map(|found| judge.judged(&found.pose)).collect();
-    let candidates = comparable(&judged, cloud.radius, own);
-    let candidate = |judged: &JudgedPose| PlaceCandidate::new(judged, &cloud.level_from_sfm, upright, own);
-    Ok(PlaceSearch {
-        candidates: candidates.iter().filter_map(candidate).collect(),
-        poses_scanned: scanned.count,
-        obstacle: None,
-    })
+    search_views(&plan, patches, &views, prior, limits, observer)
+}
+
+/// The same with a plan at hand.
+pub fn search_plan(
+    plan: &CityPlan,
+    patches: &Patches,
+    uprights: &[Upright],
+    prior: &PlacePrior,
+    limits: &Limits,
+    observer: &dyn Observer,
+) -> Result<PlaceSearch, Cancelled> {
+    match views(patches, uprights, limits) {
+        Ok(views) => search_views(plan, patches, &views, prior, limits, observer),
+        Err(obstacle) => Ok(PlaceSearch::refused(obstacle)),
+    }
+}
+
+/// The walls of the cloud under one up.
+struct View<'a> {
+    upright: &'a Upright,
+    cloud: CloudWalls,
+}
+
+/// The views under which a place can be told, or why it cannot be under the first.
+fn views<'a>(patches: &Patches, uprights: &'a [Upright], limits: &Limits) -> Result<Vec<View<'a>>, PlaceObstacle> {
+    let mut views = Vec::new();
+    let mut first = None;
+    for upright in uprights {
+        let cloud = CloudWalls::new(patches, upright, limits);
+        match obstacle(&cloud, &limits.place_search) {
+            None => views.push(View { upright, cloud }),
+            Some(obstacle) => first = first.or(Some(obstacle)),
+        }
+    }
+    if views.is_empty() { Err(first.unwrap_or(PlaceObstacle::NoWalls)) } else { Ok(views) }
 }
 
 /// Why a cloud has no place that walls could tell.
 fn obstacle(cloud: &CloudWalls, limits: &PlaceSearchLimits) -> Option<PlaceObstacle> {
-    let main = cloud.walls.first().map_or(Err(PlaceObstacle::NoWalls), Ok);
-    let main = match main {
-        Ok(wall) => wall,
-        Err(none) => return Some(none),
-    };
+    let Some(main) = cloud.walls.first() else { return Some(PlaceObstacle::NoWalls) };
     if cloud.walls.len() < limits.fewest_walls {
         return Some(PlaceObstacle::TooFewWalls { found: cloud.walls.len(), needed: limits.fewest_walls });
     }
@@ -70,11 +84,51 @@ fn obstacle(cloud: &CloudWalls, limits: &PlaceSearchLimits) -> Option<PlaceObsta
     (across < limits.least_across * all).then_some(PlaceObstacle::OneDirection)
 }
 
-/// The poses that may be right, at distinct places, the best first.
-fn comparable(judged: &[JudgedPose], radius: f64, limits: &PlaceSearchLimits) -> Vec<JudgedPose> {
-    let scored: Vec<ScoredPose> = judged.iter().map(|j| ScoredPose { pose: j.pose, z: j.z }).collect();
-    let best = scored.iter().map(|s| s.z).fold(0.0, f64::max);
-    let kept = distinct(scored, limits.keep, limits.apart_m, radius);
-    let told = kept.iter().take_while(|s| s.z > 0.0 && s.z >= limits.comparable_share * best);
-    told.filter_map(|s| judged.iter().find(|j| j.pose == s.pose).copied()).collect()
+/// Where walls matter if the middle of the cloud lies in a disc: as far beyond it as the largest cloud reaches.
+fn reached(near: &Disc, city: &PreparedCity, views: &[View], prior: &PlacePrior, limits: &Limits) -> Disc {
+    let own = &limits.place_search;
+    let tallest = tallest_m(city, Some(&near.widened(own.most_radius_m)), own.tallest_share, limits);
+    let reach = |view: &View| scale_range(&view.cloud, tallest.unwrap_or(0.0), prior, own)[1] * view.cloud.reach();
+    near.widened(views.iter().map(reach).fold(0.0, f64::max))
 }
+
+fn search_views(
+    plan: &CityPlan,
+    patches: &Patches,
+    views: &[View],
+    prior: &PlacePrior,
+    limits: &Limits,
+    observer: &dyn Observer,
+) -> Result<PlaceSearch, Cancelled> {
+    let own = &limits.place_search;
+    let near = prior.near.map(|near| near.widened(own.most_radius_m));
+    let tallest_m = tallest_m(plan.city, near.as_ref(), own.tallest_share, limits);
+    let Some(tallest_m) = tallest_m.filter(|_| !plan.walls().is_empty()) else {
+        return Ok(PlaceSearch::refused(PlaceObstacle::NoCityWalls));
+    };
+    let mut found = PlaceSearch::default();
+    for View { upright, cloud } in views {
+        let scales = scale_steps(scale_range(cloud, tallest_m, prior, own), cloud, own);
+        let scan = Scan { plan, cloud, scales: &scales, prior, limits: own };
+        let scanned = scan.run(&cloud.anchors(own.anchors, own.one_direction_deg), observer)?;
+        let sights = Sights::new(patches, cloud, limits);
+        let judge = Judge { plan, cloud, sights: &sights, limits };
+        let judged: Vec<JudgedPose> = scanned.poses.par_iter().filter_map(|s| judge.judged(&s.pose)).collect();
+        let candidate = |judged: &JudgedPose| PlaceCandidate::new(judged, &cloud.level_from_sfm, upright, own);
+        found.candidates.extend(at_distinct_places(&judged, cloud.radius, own).iter().filter_map(candidate));
+        found.poses_scanned += scanned.count;
+    }
+    found.keep_comparable(own.comparable_share);
+    Ok(found)
+}
+
+/// Sharp poses at distinct places, the best first.
+fn at_distinct_places(judged: &[JudgedPose], radius: f64, limits: &PlaceSearchLimits) -> Vec<JudgedPose> {
+    let scored: Vec<ScoredPose> = judged.iter().map(|j| ScoredPose { pose: j.pose, z: j.z }).collect();
+    let kept = distinct(scored, limits.keep, limits.apart_m, radius);
+    let of = |s: &ScoredPose| judged.iter().find(|j| j.pose == s.pose && j.z == s.z).copied();
+    kept.iter().take_while(|s| s.z > 0.0).filter_map(of).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -4,18 +4,18 @@ use super::blocks::Blocks;
 use super::city_walls::CityWall;
 
 /// The walls by the blocks that they are near to.
-pub struct WallIndex<'a> {
-    pub walls: &'a [CityWall],
+pub struct WallIndex {
+    pub walls: Vec<CityWall>,
     blocks: Blocks,
     /// For each block where its walls begin in `listed`, and where the last one's end.
     starts: Vec<u32>,
     listed: Vec<u32>,
 }
 
-impl<'a> WallIndex<'a> {
+impl WallIndex {
     /// An index that knows all walls within `reach_m` of any place.
-    pub fn new(walls: &'a [CityWall], reach_m: f64) -> WallIndex<'a> {
-        let blocks = Blocks::around(walls, reach_m);
+    pub fn new(walls: Vec<CityWall>, reach_m: f64) -> WallIndex {
+        let blocks = Blocks::around(&walls, reach_m);
         let mut pairs: Vec<(u32, u32)> = Vec::new();
         for (wall, number) in walls.iter().zip(0..) {
             pairs.extend(blocks.near(wall, reach_m).map(|(x, y)| (blocks.number(x, y) as u32, number)));

@@ -6,7 +6,8 @@
 //! * **The cloud's side.** One point a place, large clouds thinned evenly (`places`); a plane through each point's neighbours (`cloud`,
 //!   `fit`); regions of points in one plane (`regions`) become [`Patches`] with a plane, its noise and its outward side, as far as cameras
 //!   tell it (`viewers`).
-//! * **The vertical.** Which way is up in the reconstruction, by its walls and floors, the cameras and the start (`upright`, `up_votes`).
+//! * **The vertical.** Which way is up in the reconstruction, by its walls and floors, the cameras and the start (`upright`, `up_votes`), or without one
+//!   (`up_without_start`).
 
 mod city_planes;
 mod cloud;
@@ -23,6 +24,7 @@ mod regions;
 mod surface;
 mod tile_triangle;
 mod up_votes;
+mod up_without_start;
 mod upright;
 mod viewers;
 
@@ -33,4 +35,5 @@ pub use fit::{FittedPlane, fit_plane_robustly};
 pub use hit::{Hit, OrientedPoint};
 pub use patches::{Patch, Patches, patches};
 pub use prepared_city::PreparedCity;
+pub use up_without_start::up_without_start;
 pub use upright::{UpCandidate, UpChoice, Upright, choose_up, up_beyond_start, up_of_cameras};

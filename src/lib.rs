@@ -62,7 +62,7 @@ mod inspect;
 pub mod cli;
 
 // Alignment.
-pub use align::{AlignOptions, Up, align};
+pub use align::{AlignOptions, Place, Up, align};
 pub use error::Error;
 pub use inspect::{InputKind, Inspection, inspect};
 pub use observer::{Cancelled, Observer, Stage};
@@ -77,6 +77,7 @@ pub use format::positions::read_positions;
 pub use format::read_start;
 pub use geometry::{Start, StartSigmas};
 pub use georeference::{Estimate, agreed, from_control_points, from_positions};
+pub use place_search::{Disc, HeadingPrior, PlacePrior};
 pub use planes::PreparedCity;
 pub use reconstruction::{Image, Observation, Reconstruction, read_reconstruction};
 

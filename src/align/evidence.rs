@@ -7,7 +7,7 @@ use crate::evidence::{CandidateEvaluation, EvaluatedCandidate};
 use crate::geometry::Similarity;
 use crate::robust::{Matrix7, MotionParameters};
 use crate::uncertainty::{Estimate, SystematicErrors, estimate};
-use crate::verdict::{Evidence, GivenScale, PoseInformation, Rival};
+use crate::verdict::{Evidence, GivenScale, PoseInformation, Rival, SearchSpace};
 
 /// The evidence, and the points that it rests on.
 pub(super) struct VerdictInput {
@@ -53,6 +53,7 @@ pub(super) fn collect(
     evaluated: &[EvaluatedCandidate],
     given_scale: Option<GivenScale>,
     accuracy_m: Option<f64>,
+    space: SearchSpace,
 ) -> VerdictInput {
     let scene = refiner.scene;
     let best = evaluated.first().map(|best| estimate(refiner, &best.candidate.refined.city_from_level));
@@ -63,6 +64,7 @@ pub(super) fn collect(
     let by_chance = evaluation.map_or(&[][..], |evaluation| &evaluation.by_chance);
     let speaks = |c: &EvaluatedCandidate| c.weighed.by_cloud_plane.iter().filter(|bits| **bits >= SPEAKS_BITS).count();
     let evidence = Evidence {
+        space,
         rivals,
         hold,
         witnesses: evaluation.map_or(0, CandidateEvaluation::cloud_planes),

@@ -1,4 +1,4 @@
-//! Aligns one reconstruction to a city: `task` is the whole job, `obstacle` why none is possible, `evidence` what the verdict reads, `report` the
+//! Aligns one reconstruction to a city: `task` is the whole job, `whereabouts` where it is sought, `obstacle` why none is possible, `evidence` what the verdict reads, `report` the
 //! result.
 
 mod evidence;
@@ -7,6 +7,7 @@ mod options;
 mod outcome;
 mod report;
 mod task;
+mod whereabouts;
 
-pub use options::{AlignOptions, Up};
+pub use options::{AlignOptions, Place, Up};
 pub use task::align;

@@ -6,6 +6,7 @@ use crate::city::CityModel;
 use crate::correspondence::{LevelCloud, Prior, Vertical};
 use crate::geometry::{Point3, Start, Vector3};
 use crate::limits::Limits;
+use crate::place_search::PlaceObstacle;
 use crate::planes::{Patches, PreparedCity, Upright};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
@@ -19,7 +20,8 @@ pub(super) enum Obstacle {
     },
     NoPatches {
         points: usize,
-        noise_m: f64,
+        /// In units of the reconstruction.
+        noise: f64,
     },
     /// At the start's scale the cloud is smaller than a gate, or beyond all measure.
     OddSize {
@@ -32,40 +34,32 @@ pub(super) enum Obstacle {
         reach_m: f64,
         city: [Point3<f64>; 2],
     },
+    /// Without a start: why walls tell no place.
+    NoPlace(PlaceObstacle),
+    /// Without a start: no place in the city lets the walls lie on its own better than chance.
+    NothingFits,
 }
 
 /// No cloud of a city is larger, metres: the Earth's radius.
 const LARGEST_RADIUS_M: f64 = 6.4e6;
 
-/// The first obstacle that is met; `start` maps to the city's local frame.
-pub(super) fn find(
-    city: &PreparedCity,
-    reconstruction: &Reconstruction,
-    patches: &Patches,
-    start: &Start,
-    limits: &Limits,
-) -> Option<Obstacle> {
-    let Some(bounds) = city.model.bounds().filter(|_| !city.model.triangles.is_empty()) else {
+/// What stands in the way wherever the reconstruction is sought.
+pub(super) fn of_inputs(city: &PreparedCity, reconstruction: &Reconstruction, patches: &Patches) -> Option<Obstacle> {
+    if city.model.triangles.is_empty() || city.model.bounds().is_none() {
         return Some(Obstacle::EmptyCity);
-    };
+    }
     if reconstruction.points.is_empty() {
         return Some(Obstacle::NoPoints { images: reconstruction.images.len() });
     }
-    if patches.patches.is_empty() {
-        let noise_m = patches.noise * start.city_from_sfm().scale;
-        return Some(Obstacle::NoPatches { points: reconstruction.points.len(), noise_m });
-    }
-    far_off(&city.model, bounds, patches, start, limits)
+    patches
+        .patches
+        .is_empty()
+        .then(|| Obstacle::NoPatches { points: reconstruction.points.len(), noise: patches.noise })
 }
 
-/// A start from which no point can reach the city.
-fn far_off(
-    city: &CityModel,
-    (low, high): (Point3<f64>, Point3<f64>),
-    patches: &Patches,
-    start: &Start,
-    limits: &Limits,
-) -> Option<Obstacle> {
+/// A start, in the city's local frame, from which no point can reach the city.
+pub(super) fn of_start(city: &CityModel, patches: &Patches, start: &Start, limits: &Limits) -> Option<Obstacle> {
+    let (low, high) = city.bounds()?;
     let up = start.city_from_sfm().rotation.inverse() * Vector3::z();
     let upright = Upright { up, sigma_rad: start.sigmas().tilt_rad, known: false };
     let level_cloud = LevelCloud::new(patches, start.city_from_sfm(), &upright, limits);
@@ -102,10 +96,16 @@ impl fmt::Display for Obstacle {
                 f,
                 "the reconstruction has no points, only {images} images; triangulate its points first (COLMAP: point_triangulator)"
             ),
-            Obstacle::NoPatches { points, noise_m } => write!(
+            Obstacle::NoPatches { points, noise } => write!(
                 f,
-                "no planar patch among {points} points (their noise is {noise_m:.2} m at the start's scale); walls, roofs or ground \
+                "no planar patch among {points} points (their noise is {noise:.3} units of the reconstruction); walls, roofs or ground \
                  with eight points and more on each are needed"
+            ),
+            Obstacle::NoPlace(obstacle) => write!(f, "{obstacle}"),
+            Obstacle::NothingFits => write!(
+                f,
+                "at no place do the walls of the reconstruction lie on the city's better than chance lets them; check that the city covers this \
+                 place, or give a start"
             ),
             Obstacle::OddSize { radius_m, scale } => write!(
                 f,

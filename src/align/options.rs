@@ -2,6 +2,7 @@
 
 use crate::geometry::{Start, Vector3};
 use crate::limits::Limits;
+use crate::place_search::PlacePrior;
 
 /// Which way is up in the reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -15,12 +16,20 @@ pub enum Up {
     Given(Vector3<f64>),
 }
 
+/// What is known beforehand of where the reconstruction stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// Roughly a pose, to absolute city coordinates: searched as far as three of its sigmas.
+    Start(Start),
+    /// Anywhere in the city that this allows, in absolute city coordinates: found by the walls of the reconstruction.
+    Anywhere(PlacePrior),
+}
+
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct AlignOptions {
-    /// To absolute city coordinates.
-    pub start: Start,
+    pub place: Place,
     /// Metres per sfm unit, held fixed, in place of the start's; free where `None`.
     pub fixed_scale: Option<f64>,
     pub up: Up,
@@ -32,9 +41,18 @@ pub struct AlignOptions {
 }
 
 impl AlignOptions {
-    /// Everything but the start as most users want it.
+    /// From a start on; everything else as most users want it.
     pub fn new(start: Start) -> AlignOptions {
-        AlignOptions { start, fixed_scale: None, up: Up::Auto, accuracy_m: None, seed: 0, limits: Limits::default() }
+        AlignOptions::at(Place::Start(start))
+    }
+
+    /// Without a start: anywhere in the city, or where the little that is known allows. Everything else as most users want it.
+    pub fn anywhere(prior: PlacePrior) -> AlignOptions {
+        AlignOptions::at(Place::Anywhere(prior))
+    }
+
+    pub(crate) fn at(place: Place) -> AlignOptions {
+        AlignOptions { place, fixed_scale: None, up: Up::Auto, accuracy_m: None, seed: 0, limits: Limits::default() }
     }
 
     /// Holds the scale, metres per sfm unit; `None` leaves it free.

@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 
 use super::options::{AlignOptions, Up};
 use super::outcome::Outcome;
-use super::{evidence, obstacle, report};
+use super::whereabouts::{Whereabouts, up_of};
+use super::{evidence, report};
 use crate::correspondence::{Candidate, Hypotheses, PoseRefiner, Scene, candidates, joined, search};
 use crate::evidence::CandidateEvaluation;
-use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
+use crate::geometry::{Similarity, StartSigmas};
 use crate::imagery::LiftedSuperpixels;
-use crate::limits::Limits;
 use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
-use crate::planes::{Patches, PreparedCity, UpCandidate, UpChoice, Upright, choose_up, patches, up_beyond_start};
+use crate::planes::{Patches, PreparedCity, UpCandidate, Upright, patches, up_beyond_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
 use crate::verdict::{Alignment, Decision, Verdict, judge};
@@ -27,34 +27,23 @@ pub fn align(
 ) -> Result<Alignment, Cancelled> {
     observer.progress(Stage::Patches, 0, 0);
     let patches = patches(reconstruction, superpixels, &options.limits.patches);
-    let start = local_start(options, &patches, city);
-    if let Some(obstacle) = obstacle::find(city, reconstruction, &patches, &start, &options.limits) {
-        return Ok(report::refused(&obstacle, city, &patches, options));
-    }
+    let whereabouts = match Whereabouts::find(city, reconstruction, &patches, options, observer)? {
+        Ok(whereabouts) => whereabouts,
+        Err(obstacle) => return Ok(report::refused(&obstacle, city, &patches, options)),
+    };
     check_cancelled(observer)?;
     observer.progress(Stage::City, 0, 0);
-    let task = Task { city, patches: &patches, start: &start, options, observer };
+    let task = Task { city, patches: &patches, whereabouts: &whereabouts, options, observer };
     let answer = task.answer()?;
-    let up_elsewhere = up_elsewhere(&answer.decision, &patches, &start, options);
+    let up_elsewhere = up_elsewhere(&answer.decision, &patches, &whereabouts, options);
     Ok(report::tell(answer, &patches, up_elsewhere, city, options))
-}
-
-/// The start in the city's local frame. A scale that is given takes the place of the start's, about the cloud's middle.
-fn local_start(options: &AlignOptions, patches: &Patches, city: &PreparedCity) -> Start {
-    let city_from_sfm = options.start.city_from_sfm().relative_to(&city.model.origin);
-    let middle = patches.middle();
-    options.start.about(match options.fixed_scale {
-        None => city_from_sfm,
-        Some(scale) => Similarity::about(&middle, &city_from_sfm.apply(&middle), scale, city_from_sfm.rotation),
-    })
 }
 
 /// What is to be aligned, and how.
 struct Task<'a> {
     city: &'a PreparedCity,
     patches: &'a Patches,
-    /// To the city's local frame; of the given scale where there is one.
-    start: &'a Start,
+    whereabouts: &'a Whereabouts,
     options: &'a AlignOptions,
     observer: &'a dyn Observer,
 }
@@ -99,14 +88,16 @@ impl<'a> Task<'a> {
             .options
             .fixed_scale
             .and_then(|_| Some(evidence::scale_of_data(&refiner, evaluation.as_ref()?, evaluated.first()?)));
-        let found = evidence::collect(&refiner, evaluation.as_ref(), &evaluated, given_scale, self.options.accuracy_m);
+        let space = self.whereabouts.space();
+        let found =
+            evidence::collect(&refiner, evaluation.as_ref(), &evaluated, given_scale, self.options.accuracy_m, space);
         let decision = judge(&found.evidence, &self.options.limits.verdict);
         Ok(Outcome { decision, found, hypotheses: view.hypotheses })
     }
 
     /// Searches under every up that there may be; the view with the best candidate, joined by the candidates of the others.
     fn best_view(&self, motion: Motion) -> Result<View<'a>, Cancelled> {
-        let uprights = uprights(self.patches, self.start, self.options.up, &self.options.limits);
+        let uprights = &self.whereabouts.uprights;
         let mut views = uprights.iter().map(|upright| self.view(upright, motion)).collect::<Result<Vec<View>, _>>()?;
         let total_score = |view: &View| view.candidates.first().map_or(f64::NEG_INFINITY, Candidate::total_score);
         let at =
@@ -125,8 +116,11 @@ impl<'a> Task<'a> {
     }
 
     fn view(&self, upright: &Upright, motion: Motion) -> Result<View<'a>, Cancelled> {
-        let scene = Scene::new(self.city, self.patches, self.start, motion, upright, &self.options.limits);
-        let hypotheses = search(&scene, self.options.seed, self.observer)?;
+        let scene = Scene::new(self.city, self.patches, &self.whereabouts.reach, motion, upright, &self.options.limits);
+        let hypotheses = match self.whereabouts.hypotheses(&scene, upright) {
+            Some(of_places) => of_places,
+            None => search(&scene, self.options.seed, self.observer)?,
+        };
         let candidates = candidates(&PoseRefiner::new(&scene), &hypotheses);
         check_cancelled(self.observer)?;
         Ok(View { upright: *upright, scene, hypotheses, candidates })
@@ -136,7 +130,8 @@ impl<'a> Task<'a> {
     /// that knows everything would leave none to compare with.
     fn null_pose_scene(&self, view: &View) -> Scene<'a> {
         let limits = &self.options.limits;
-        let (own, usual) = (*self.start.sigmas(), StartSigmas::default());
+        let start = &self.whereabouts.start;
+        let (own, usual) = (*start.sigmas(), StartSigmas::default());
         let sigmas = StartSigmas {
             position_m: own.position_m.max(limits.null_poses.least_reach_m / limits.reach_sigmas),
             height_m: own.height_m.max(usual.height_m),
@@ -144,33 +139,18 @@ impl<'a> Task<'a> {
             tilt_rad: own.tilt_rad.max(usual.tilt_rad),
             log_scale: own.log_scale.max(usual.log_scale),
         };
-        let start = self.start.with_sigmas(sigmas);
+        let start = start.with_sigmas(sigmas);
         Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits)
     }
 }
 
-/// The ways of taking up that are searched.
-fn uprights(patches: &Patches, start: &Start, up: Up, limits: &Limits) -> Vec<Upright> {
-    let guess = up_of(start);
-    match up {
-        Up::Auto => match choose_up(patches, &guess, limits) {
-            UpChoice::Known(all) => all,
-            UpChoice::Free(up) => vec![up],
-        },
-        Up::None => vec![guess],
-        Up::Given(up) => {
-            vec![Upright { up: up.try_normalize(0.0).unwrap_or(guess.up), sigma_rad: 0.0, known: true }]
-        }
-    }
-}
-
 /// The up that walls and cameras see, where nothing was found and it lies beyond the start's reach.
-fn up_elsewhere(decision: &Decision, patches: &Patches, start: &Start, options: &AlignOptions) -> Option<UpCandidate> {
-    let failed = decision.verdict == Verdict::Failed && options.up == Up::Auto;
-    failed.then(|| up_beyond_start(patches, &up_of(start), &options.limits)).flatten()
-}
-
-fn up_of(start: &Start) -> Upright {
-    let up = start.city_from_sfm().rotation.inverse() * Vector3::z();
-    Upright { up, sigma_rad: start.sigmas().tilt_rad, known: false }
+fn up_elsewhere(
+    decision: &Decision,
+    patches: &Patches,
+    whereabouts: &Whereabouts,
+    options: &AlignOptions,
+) -> Option<UpCandidate> {
+    let failed = decision.verdict == Verdict::Failed && options.up == Up::Auto && whereabouts.is_start();
+    failed.then(|| up_beyond_start(patches, &up_of(&whereabouts.start), &options.limits)).flatten()
 }

@@ -29,7 +29,7 @@ pub fn carry_out(plan: &AlignPlan, output: Option<Output>, session: &Session) ->
     let Some((output, place)) = output.zip(plan.output.as_ref()) else {
         return tell_start(&inputs, plan, session);
     };
-    let options = plan.options(inputs.estimate.start);
+    let options = plan.options(inputs.start.as_ref().map(|known| known.estimate.start));
     let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &options, &voice.bar)?;
     voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
     alignment.warnings.splice(0..0, inputs.warnings(plan));
@@ -54,6 +54,11 @@ struct Inputs {
     city: PreparedCity,
     sfm: Reconstruction,
     superpixels: Option<LiftedSuperpixels>,
+    /// Without one the city is searched.
+    start: Option<KnownStart>,
+}
+
+struct KnownStart {
     estimate: Estimate,
     /// From the start to the nearest facet, metres.
     distance_m: f64,
@@ -63,10 +68,11 @@ struct Inputs {
 fn tell_start(inputs: &Inputs, plan: &AlignPlan, session: &Session) -> Result<Outcome> {
     let voice = &session.voice;
     voice.warnings(&inputs.warnings(plan));
+    let start = inputs.start.as_ref().map(|known| (&known.estimate, known.distance_m));
     if session.common.json {
-        voice.json(&start_report(&inputs.estimate, inputs.distance_m)?, None)?;
+        voice.json(&start_report(start)?, None)?;
     } else {
-        voice.result(&summary::of_start(&inputs.estimate, inputs.distance_m, voice.seconds()), None)?;
+        voice.result(&summary::of_start(start, voice.seconds()), None)?;
     }
     Ok(Outcome::Good)
 }
@@ -80,12 +86,20 @@ impl Inputs {
         voice.bar.show("reading the reconstruction", 0, 0);
         let sfm = read_reconstruction(&plan.sfm)?;
         voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
-        let estimate = plan.place.estimate(&sfm, &city)?;
-        let distance_m = estimate.distance_to_city(&sfm.points, &city).inspect_err(|_| {
-            // A unit or an axis that is not what it was taken for leads a start away.
-            voice.warnings(&city.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
-        })?;
-        voice.detail(&format!("start: {}; {distance_m:.1} m from the nearest facet", estimate.source));
+        let start = match plan.place.estimate(&sfm, &city)? {
+            Some(estimate) => {
+                let distance_m = estimate.distance_to_city(&sfm.points, &city).inspect_err(|_| {
+                    // A unit or an axis that is not what it was taken for leads a start away.
+                    voice.warnings(&city.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
+                })?;
+                voice.detail(&format!("start: {}; {distance_m:.1} m from the nearest facet", estimate.source));
+                Some(KnownStart { estimate, distance_m })
+            }
+            None => {
+                voice.detail("start: none, the city is searched");
+                None
+            }
+        };
         // A dry run does without what takes minutes.
         let superpixels = match plan.superpixels.as_ref().filter(|_| plan.output.is_some()) {
             None => None,
@@ -95,7 +109,7 @@ impl Inputs {
                 Some(lifted)
             }
         };
-        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, estimate, distance_m })
+        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, start })
     }
 
     /// What was tolerated while reading, once each.
@@ -103,7 +117,7 @@ impl Inputs {
         let mut warnings = plan.warnings.clone();
         warnings.extend(self.city.model.warnings.iter().map(ToString::to_string));
         warnings.extend(self.sfm.warnings.iter().map(ToString::to_string));
-        warnings.extend(self.estimate.warnings.iter().cloned());
+        warnings.extend(self.start.iter().flat_map(|known| &known.estimate.warnings).cloned());
         warnings.extend(self.superpixels.iter().flat_map(|lifted| &lifted.warnings).map(ToString::to_string));
         warnings
     }
@@ -113,7 +127,7 @@ impl Inputs {
         InputSummary {
             city: CityCounts::of(&self.city.model, plan.city.names()),
             sfm: SfmCounts::of(&self.sfm, file_name(&plan.sfm), superpixels),
-            prior: Some(self.estimate.clone()),
+            prior: self.start.as_ref().map(|known| known.estimate.clone()),
         }
     }
 }

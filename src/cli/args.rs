@@ -102,6 +102,8 @@ pub struct Common {
     cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
     cityweld align city.glb cloud.ply --terrain ground.obj --start start.json -o out\n  \
     cityweld align city.obj sfm/ --positions photos/ --crs EPSG:28992 -o out\n  \
+    cityweld align city.city.json sfm/ -o out                       (anywhere in the city)\n  \
+    cityweld align city.city.json sfm/ --near 85120,447250,300 -o out\n  \
     cityweld align city.obj sfm/ --positions geo.txt --points gcp_list.txt --crs EPSG:28992 --dry-run\n\n\
     A start file:\n  \
     {\"scale\": 12.5, \"rotation\": [[1,0,0],[0,1,0],[0,0,1]], \"translation\": [100, 200, 3],\n   \
@@ -132,6 +134,10 @@ pub struct AlignArgs {
     /// a line keeps its point out and has its residual reported
     #[arg(long, value_name = "FILE")]
     pub points: Option<PathBuf>,
+    /// Where the middle of the reconstruction may be, in the city's frame, metres: searched within that radius, with nothing else known
+    /// [default: without any of --start, --positions, --points, the whole city is searched by the walls of the reconstruction]
+    #[arg(long, value_name = "X,Y[,Z],RADIUS", allow_hyphen_values = true, conflicts_with_all = ["start", "positions", "points"])]
+    pub near: Option<Near>,
     /// Read and check everything, tell the start and its distance from the city, write nothing
     #[arg(long)]
     pub dry_run: bool,
@@ -357,6 +363,26 @@ impl FromStr for Scale {
         match numbers(text).as_deref() {
             Some([scale]) if *scale > 0.0 => Ok(Scale(*scale)),
             _ => Err("expected a finite number above 0: metres per reconstruction unit".into()),
+        }
+    }
+}
+
+/// `--near`: a disc in plan, metres of the city.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    pub center: [f64; 2],
+    pub radius_m: f64,
+}
+
+impl FromStr for Near {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Near, String> {
+        match numbers(text).as_deref() {
+            Some([x, y, radius_m] | [x, y, _, radius_m]) if *radius_m > 0.0 => {
+                Ok(Near { center: [*x, *y], radius_m: *radius_m })
+            }
+            _ => Err("expected X,Y,RADIUS or X,Y,Z,RADIUS: metres of the city, a radius above 0".into()),
         }
     }
 }

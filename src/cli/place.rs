@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 
-use super::args::AlignArgs;
+use super::args::{AlignArgs, Near};
 use super::plan::file_name;
 use crate::city::CityModel;
 use crate::format::control::{ControlFile, read_control_points};
@@ -12,6 +12,7 @@ use crate::format::positions::{Frame, PositionsFile, read_positions};
 use crate::format::read_start;
 use crate::geometry::Start;
 use crate::georeference::{Estimate, agreed, from_control_points, from_positions};
+use crate::place_search::{Disc, PlacePrior};
 use crate::reconstruction::Reconstruction;
 
 /// What was given to say it, read.
@@ -19,6 +20,7 @@ pub struct PlaceSources {
     start: Option<Named<Start>>,
     positions: Option<Named<PositionsFile>>,
     points: Option<Named<ControlFile>>,
+    near: Option<Disc>,
 }
 
 /// Something read, and the name of its file.
@@ -40,22 +42,21 @@ impl PlaceSources {
         let mut positions = args.positions.as_ref().map(named_positions).transpose()?;
         let points =
             args.points.as_ref().map(|path| anyhow::Ok(Named::new(path, read_control_points(path)?))).transpose()?;
-        if start.is_none() && positions.is_none() && points.is_none() {
-            let Some(photos) = args.photos.as_ref() else {
-                bail!(
-                    "nothing says where the reconstruction is, and searching without that is not built yet; give --positions (EXIF, COLMAP \
-                     database, geo.txt, name X Y Z, ...), --points, --photos with GPS, or --start FILE (`cityweld align --help` shows the forms)"
-                );
-            };
-            let read = named_positions(photos)
-                .context("nothing else says where the reconstruction is, so the photographs were asked; give --positions or --start")?;
-            positions = Some(read);
+        let near = args.near.map(|Near { center, radius_m }| Disc { center, radius_m });
+        if start.is_none() && positions.is_none() && points.is_none() && near.is_none() {
+            // Photographs without GPS say nothing, and are no error.
+            positions = args.photos.as_ref().and_then(|photos| named_positions(photos).ok());
         }
-        Ok(PlaceSources { start, positions, points })
+        Ok(PlaceSources { start, positions, points, near })
     }
 
-    /// The start that all sources together give.
-    pub fn estimate(&self, sfm: &Reconstruction, city: &CityModel) -> Result<Estimate> {
+    /// What is known of the place where there is no start: the middle lies there, or anywhere in the city.
+    pub fn prior(&self) -> PlacePrior {
+        PlacePrior { near: self.near, ..PlacePrior::default() }
+    }
+
+    /// The start that all sources together give; none where there is no source.
+    pub fn estimate(&self, sfm: &Reconstruction, city: &CityModel) -> Result<Option<Estimate>> {
         let frame = city.crs.as_ref().and_then(|crs| crs.epsg).map(Frame::Epsg);
         let frame = frame.as_ref();
         let mut estimates = Vec::new();
@@ -68,6 +69,6 @@ impl PlaceSources {
         if let Some(Named { name, read }) = &self.points {
             estimates.push(from_control_points(read, name, sfm, city, frame)?);
         }
-        agreed(estimates)?.context("nothing says where the reconstruction is")
+        Ok(agreed(estimates)?)
     }
 }

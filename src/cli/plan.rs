@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::city::CityOptions;
 use crate::geometry::{Start, Vector3};
 use crate::imagery::SuperpixelSource;
-use crate::{AlignOptions, Up};
+use crate::{AlignOptions, Place, Up};
 use anyhow::{Context, Result, ensure};
 
 use super::args::{AlignArgs, CityArgs, UpArg};
@@ -72,10 +72,11 @@ impl AlignPlan {
         })
     }
 
-    /// Everything that `align` takes, from a start on.
-    pub fn options(&self, start: Start) -> AlignOptions {
+    /// Everything that `align` takes, from a start on where there is one.
+    pub fn options(&self, start: Option<Start>) -> AlignOptions {
+        let place = start.map_or_else(|| Place::Anywhere(self.place.prior()), Place::Start);
         let Settings { fixed_scale, up, accuracy_m, seed, false_alarm } = self.settings;
-        let options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::new(start) };
+        let options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::at(place) };
         options.with_false_alarm(false_alarm)
     }
 }

@@ -73,7 +73,12 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
 }
 
 /// Where the search would begin.
-pub fn of_start(estimate: &Estimate, distance_m: f64, seconds: f64) -> String {
+pub fn of_start(start: Option<(&Estimate, f64)>, seconds: f64) -> String {
+    let Some((estimate, distance_m)) = start else {
+        let mut table = Table::new("start: none, the city would be searched", 13);
+        table.row("time", format!("{seconds:.1} s"));
+        return table.text;
+    };
     let mut table = Table::new(&format!("start: {}", estimate.source), 13);
     let (pose, sigmas) = (estimate.start.city_from_sfm(), estimate.start.sigmas());
     let middle = pose.apply(&estimate.middle);

@@ -72,8 +72,8 @@ pub fn alignment_report(alignment: &Alignment, input: &InputSummary) -> Result<S
     Ok(serde_json::to_string_pretty(&report)? + "\n")
 }
 
-/// The start alone, as `align --dry-run --json` tells it.
-pub fn start_report(estimate: &Estimate, distance_m: f64) -> Result<String, ReportError> {
+/// The start alone, as `align --dry-run --json` tells it, with the distance from its middle to the city's nearest facet, metres; `null` without one.
+pub fn start_report(start: Option<(&Estimate, f64)>) -> Result<String, ReportError> {
     #[derive(Serialize)]
     struct StartJson<'a> {
         #[serde(flatten)]
@@ -82,7 +82,10 @@ pub fn start_report(estimate: &Estimate, distance_m: f64) -> Result<String, Repo
         distance: f64,
         warnings: &'a [String],
     }
-    let report = StartJson { prior: PriorJson::of(estimate)?, distance: distance_m, warnings: &estimate.warnings };
+    let json = |(estimate, distance): (&'_ Estimate, f64)| -> Result<_, serde_json::Error> {
+        serde_json::to_value(StartJson { prior: PriorJson::of(estimate)?, distance, warnings: &estimate.warnings })
+    };
+    let report = start.map(json).transpose()?;
     Ok(serde_json::to_string_pretty(&report)? + "\n")
 }
 

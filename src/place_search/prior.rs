@@ -14,7 +14,7 @@ pub struct PlacePrior {
     pub heading: Option<HeadingPrior>,
 }
 
-/// A disc in plan; city frame (local), metres.
+/// A disc in plan; metres of the city.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
     pub center: [f64; 2],
@@ -44,6 +44,12 @@ impl Disc {
 }
 
 impl PlacePrior {
+    /// The same, in a frame with another origin.
+    pub fn relative_to(&self, origin: &Vector3<f64>) -> PlacePrior {
+        let moved = |near: Disc| Disc { center: [near.center[0] - origin.x, near.center[1] - origin.y], ..near };
+        PlacePrior { near: self.near.map(moved), ..*self }
+    }
+
     /// The turn about z from the level frame to the city that is expected, and how far it may be off.
     pub fn heading_of_level(&self, level_from_sfm: &Rotation3<f64>) -> Option<[f64; 2]> {
         self.heading.map(|heading| {

@@ -60,9 +60,20 @@ pub struct Decision {
     pub scale_is_denied: bool,
 }
 
+/// What the poses that are compared were chosen from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum SearchSpace {
+    /// The neighbourhood of a start; its sigmas say how likely each place was beforehand.
+    #[default]
+    AboutStart,
+    /// A city, or a part of it, where so many poses were as likely beforehand: their number as a logarithm to base 2.
+    City { bits: f64 },
+}
+
 /// Everything that a verdict reads.
 #[derive(Clone, Debug)]
 pub struct Evidence {
+    pub space: SearchSpace,
     /// The best within the start's reach first.
     pub rivals: Vec<Rival>,
     /// What holds the best of them.
@@ -84,9 +95,7 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Decision {
     let Some(best) = rivals.first() else {
         return Decision {
             verdict: Verdict::Failed,
-            reason: "no pose within three sigmas of the start lays the points on facets of the city; check the start, its scale and \
-                     that the city covers this place"
-                .to_owned(),
+            reason: no_pose_reason(evidence.space),
             alternatives: Vec::new(),
             certainty: Certainty { false_alarm: limits.false_alarm, ..Certainty::default() },
             scale_is_denied: false,
@@ -108,7 +117,7 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Decision {
     } else if let Some(beyond) = serious.iter().find(|r| r.beyond_start) {
         (Verdict::Ambiguous, beyond_reason(best, beyond, hold))
     } else if !serious.is_empty() {
-        (Verdict::Ambiguous, ambiguous_reason(best, &serious, hold))
+        (Verdict::Ambiguous, ambiguous_reason(best, &serious, evidence))
     } else if let Some(reason) = undetermined_reason(hold, limits) {
         (Verdict::Undetermined, reason)
     } else {
@@ -147,7 +156,11 @@ fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> 
     let within: Vec<&&Rival> = others.iter().filter(|r| !r.beyond_start).collect();
     // The share that the start gives to the best among all that the search chose from.
     let tried = within.iter().filter(|r| !r.by_chance).map(|r| (r.prior_bits - best.prior_bits).exp2());
-    let search_bits = (1.0 + tried.sum::<f64>()).log2();
+    let others_searched = match evidence.space {
+        SearchSpace::AboutStart => 0.0,
+        SearchSpace::City { bits } => bits.exp2() - 1.0,
+    };
+    let search_bits = (1.0 + others_searched.max(tried.sum::<f64>())).log2();
     // Odds against the pose: chance among all that were tried, and each rival.
     let chance = (search_bits - best.bits).exp2();
     let of_rivals: f64 = within.iter().map(|r| (r.posterior_bits() - best.posterior_bits()).exp2()).sum();
@@ -182,6 +195,21 @@ fn percent(share: f64) -> f64 {
     100.0 * share
 }
 
+fn no_pose_reason(space: SearchSpace) -> String {
+    let sought = match space {
+        SearchSpace::AboutStart => "within three sigmas of the start",
+        SearchSpace::City { .. } => "at the places where walls lie on the city's",
+    };
+    format!("no pose {sought} lays the points on facets of the city; {}", what_to_check(space))
+}
+
+fn what_to_check(space: SearchSpace) -> &'static str {
+    match space {
+        SearchSpace::AboutStart => "check the start, its scale and that the city covers this place",
+        SearchSpace::City { .. } => "check that the city covers this place, or say where it is (--near, a start)",
+    }
+}
+
 fn failed_reason(certainty: &Certainty, evidence: &Evidence) -> String {
     let Certainty { bits, needed_bits, speaking, witnesses, .. } = certainty;
     let best_by_chance = match evidence.by_chance {
@@ -193,11 +221,17 @@ fn failed_reason(certainty: &Certainty, evidence: &Evidence) -> String {
     };
     format!(
         "nothing fits better than chance may: {speaking} of the {witnesses} planes that the cloud saw lie on the city in the best pose, which is evidence of \
-         {bits:.1} bits, and {needed_bits:.1} are needed{best_by_chance}; check the start, its scale and that the city covers this place"
+         {bits:.1} bits, and {needed_bits:.1} are needed{best_by_chance}; {}",
+        what_to_check(evidence.space)
     )
 }
 
-fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &PoseInformation) -> String {
+fn ambiguous_reason(best: &Rival, serious: &[&Rival], evidence: &Evidence) -> String {
+    let hold = &evidence.hold;
+    let remedy = match evidence.space {
+        SearchSpace::AboutStart => "a start with smaller sigmas",
+        SearchSpace::City { .. } => "a start, or --near,",
+    };
     let heaviest = serious.iter().max_by(|a, b| a.posterior_bits().total_cmp(&b.posterior_bits()));
     let how = heaviest.map_or(String::new(), |r| {
         let differs = words::difference(&best.city_from_sfm, &r.city_from_sfm, &hold.parameters.center);
@@ -207,7 +241,7 @@ fn ambiguous_reason(best: &Rival, serious: &[&Rival], hold: &PoseInformation) ->
         )
     });
     format!(
-        "{} other pose{} cannot be ruled out beside the best{how}; a start with smaller sigmas would exclude what is wrong",
+        "{} other pose{} cannot be ruled out beside the best{how}; {remedy} would exclude what is wrong",
         serious.len(),
         if serious.len() == 1 { "" } else { "s" },
     )

@@ -17,7 +17,8 @@ fn met(change: impl FnOnce(&mut Similarity, &mut StartSigmas)) -> Option<Obstacl
     let mut pose = survey.city_from_sfm.relative_to(&city.model.origin);
     let mut sigmas = StartSigmas::default();
     change(&mut pose, &mut sigmas);
-    find(&city, &survey.sfm, &patches, &Start::new(pose, sigmas).unwrap(), &limits)
+    of_inputs(&city, &survey.sfm, &patches)
+        .or_else(|| of_start(&city.model, &patches, &Start::new(pose, sigmas).unwrap(), &limits))
 }
 
 #[test]
@@ -51,15 +52,13 @@ fn a_scale_of_no_place_is_named() {
 
 #[test]
 fn a_city_without_facets_and_a_cloud_without_points_or_planes_are_named() {
-    let start = Start::with_default_sigmas(Similarity::identity());
-    let limits = Limits::default();
     let empty = PreparedCity::new(CityModel::default());
     let nothing = Reconstruction::default();
     let none = Patches::default();
-    assert_eq!(find(&empty, &nothing, &none, &start, &limits), Some(Obstacle::EmptyCity));
+    assert_eq!(of_inputs(&empty, &nothing, &none), Some(Obstacle::EmptyCity));
     let city = PreparedCity::new(Block::four_houses().city().unwrap());
-    assert_eq!(find(&city, &nothing, &none, &start, &limits), Some(Obstacle::NoPoints { images: 0 }));
+    assert_eq!(of_inputs(&city, &nothing, &none), Some(Obstacle::NoPoints { images: 0 }));
     let alone = Reconstruction { points: vec![Point3::origin()], ..Reconstruction::default() };
-    let found = find(&city, &alone, &none, &start, &limits).unwrap();
+    let found = of_inputs(&city, &alone, &none).unwrap();
     assert!(matches!(found, Obstacle::NoPatches { points: 1, .. }), "{found}");
 }

@@ -9,6 +9,6 @@ fn setters_change_what_they_name_and_nothing_else() {
     assert_eq!((set.fixed_scale, set.up, set.accuracy_m, set.seed), (Some(2.5), Up::None, Some(0.1), 9));
     assert_eq!(set.limits.verdict.false_alarm, 1e-6);
     let others = Limits { verdict: plain.limits.verdict, ..set.limits };
-    assert_eq!((others, set.start), (plain.limits, plain.start));
+    assert_eq!((others, set.place), (plain.limits, plain.place));
     assert_eq!(set.with_fixed_scale(None).fixed_scale, None);
 }

@@ -27,7 +27,15 @@ fn hold(open: Option<usize>) -> PoseInformation {
 
 fn decision(rivals: &[Rival], hold: &PoseInformation) -> Decision {
     let (rivals, hold) = (rivals.to_vec(), hold.clone());
-    let evidence = Evidence { rivals, hold, witnesses: 20, speaking: 12, by_chance: 128, most_by_chance: 2.0 };
+    let evidence = Evidence {
+        space: SearchSpace::AboutStart,
+        rivals,
+        hold,
+        witnesses: 20,
+        speaking: 12,
+        by_chance: 128,
+        most_by_chance: 2.0,
+    };
     judge(&evidence, &Limits::default().verdict)
 }
 

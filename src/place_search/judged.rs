@@ -56,7 +56,8 @@ impl Judge<'_> {
         let height_m = (heights_m[0] + heights_m[1]) / 2.0;
         let overlap = |wall: &CloudWall, city: &CityWall| {
             let seen = [wall.bottom, wall.top].map(|z| height_m + pose.scale * z);
-            let common = seen[1].min(city.top_m) - seen[0].max(city.foot_m);
+            let wall = [city.foot_m - limits.overshoot_m, city.top_m + limits.overshoot_m];
+            let common = seen[1].min(wall[1]) - seen[0].max(wall[0]);
             (common / (seen[1] - seen[0]).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
         };
         let hits = |of: &dyn Fn(&CloudWall, &CityWall) -> f64| -> Vec<f64> {

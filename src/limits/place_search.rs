@@ -16,7 +16,7 @@ pub struct PlaceSearchLimits {
     pub anchors: usize,
     /// Steps of the slide along a wall, and of the scale at the cloud's radius, metres. Measured: from 1 to 2 m all rank alike.
     pub step_m: f64,
-    /// Walls that are looked at first, and the share of their weight that must be met. Measured: drops 97 of 100 poses, the truth never.
+    /// Walls that are looked at first, and the share of their weight that must be met. Measured: no scene's truth falls below.
     pub looked_at_first: usize,
     pub least_share: f64,
     /// Walls of the cloud that score a pose, the strongest. Chosen: more say nothing new.
@@ -24,7 +24,7 @@ pub struct PlaceSearchLimits {
     /// Metres of a wall that count as one independent look, and how many looks one wall can be. Measured: so weighed, no search collapsed in scale.
     pub metres_of_look: f64,
     pub most_looks: f64,
-    /// Poses of the scan that are made sharp, distinct by this, metres over the cloud. Measured: the truth was among the first 27.
+    /// Poses of the scan that are made sharp, distinct by this, metres over the cloud. Measured: the truth was the 27th at worst.
     pub keep: usize,
     pub apart_m: f64,
     /// The tallest wall that was well seen is at least so tall, metres. Chosen: less is a fence.

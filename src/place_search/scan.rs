@@ -55,7 +55,7 @@ impl Scan<'_> {
         let mut all = Scanned { poses: Vec::new(), count: 0 };
         for (round, some) in blocks.chunks(ROUND).enumerate() {
             check_cancelled(observer)?;
-            observer.progress(Stage::Search, (round * ROUND * BLOCK).min(long.len()), long.len());
+            observer.progress(Stage::Places, (round * ROUND * BLOCK).min(long.len()), long.len());
             let found: Vec<Scanned> = some.par_iter().map(|walls| self.block(walls, &tied)).collect();
             for scanned in found {
                 all.count += scanned.count;
@@ -139,14 +139,14 @@ impl Scan<'_> {
         for wall in 0..first {
             met += if meets(wall, 0) { step.weights[wall] } else { 0.0 };
         }
-        if met == 0.0 {
+        if met < step.least_met {
             return None;
         }
         for wall in 0..first {
             let ends = u8::from(meets(wall, 1)) + u8::from(meets(wall, 2));
             met += f64::from(ends) * step.weights[wall];
         }
-        if met < step.least_met {
+        if met < PLACES.len() as f64 * step.least_met {
             return None;
         }
         for wall in first..step.weights.len() {
@@ -171,7 +171,7 @@ struct Tied {
     /// Step by step.
     weights: Vec<f64>,
     heights: Vec<u64>,
-    /// For each step what the walls that are looked at first must meet, in thirds of a wall.
+    /// For each step the weight that the walls that are looked at first must meet, with their middles and with all places.
     least_met: Vec<f64>,
 }
 
@@ -198,7 +198,7 @@ impl Tied {
         let each = scan.scales.iter().flat_map(|&scale| others.iter().map(move |wall| wall.height() * scale));
         let heights = each.map(|height_m| height_code(height_m - limits.overshoot_m)).collect();
         let first = |of_step: &[f64]| of_step.iter().take(limits.looked_at_first).sum::<f64>();
-        let least = |of_step: &[f64]| limits.least_share * PLACES.len() as f64 * first(of_step);
+        let least = |of_step: &[f64]| limits.least_share * first(of_step);
         let least_met = weights.chunks(others.len().max(1)).map(least).collect();
         Tied { anchor: walls[anchor], weights, heights, least_met, others }
     }

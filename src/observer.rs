@@ -33,6 +33,8 @@ pub enum Stage {
     Patches,
     /// The planes of the city are made ready.
     City,
+    /// A place is sought in the whole city; steps are its walls.
+    Places,
     /// Minimal samples are drawn; steps are samples.
     Search,
     /// Poses are held against chance.
@@ -49,6 +51,7 @@ impl fmt::Display for Stage {
             Stage::Superpixels => "superpixels",
             Stage::Patches => "patches",
             Stage::City => "city",
+            Stage::Places => "looking through the city",
             Stage::Search => "search",
             Stage::Evidence => "evidence",
             Stage::ComparingParts => "comparing the parts",

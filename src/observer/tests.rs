@@ -22,6 +22,7 @@ fn every_stage_has_words_of_its_own() {
         Stage::Superpixels,
         Stage::Patches,
         Stage::City,
+        Stage::Places,
         Stage::Search,
         Stage::Evidence,
         Stage::ComparingParts,

@@ -1,4 +1,4 @@
-//! Blocks of plan, 8 m wide, kept where there are walls only.
+//! Blocks of plan, 4 m wide, kept where there are walls only.
 //!
 //! Question     which block does a place lie in, in a city of any extent?
 //! Method       two tables: tiles of 64 x 64 blocks over the box of the city, blocks within those tiles that hold any. A building astray in
@@ -8,12 +8,13 @@ use super::city_walls::CityWall;
 
 /// Side of a cell of the raster, metres; the reach of "near a wall" is three of them.
 pub const CELL_M: f64 = 0.5;
-/// A block is 2^4 cells wide, a tile 2^6 blocks.
-pub const BLOCK_BITS: u32 = 4;
+/// A block is 2^3 cells wide, a tile 2^6 blocks.
+pub const BLOCK_BITS: u32 = 3;
 const TILE_BITS: u32 = 6;
 pub const CELLS_OF_BLOCK: usize = 1 << (2 * BLOCK_BITS);
 const BLOCKS_OF_TILE: usize = 1 << (2 * TILE_BITS);
 const BLOCK_M: f64 = CELL_M * (1 << BLOCK_BITS) as f64;
+const HALF_DIAGONAL_M: f64 = BLOCK_M * std::f64::consts::FRAC_1_SQRT_2;
 
 /// Numbers of the blocks near walls; 0 is no block.
 pub struct Blocks {
@@ -29,6 +30,11 @@ pub struct Blocks {
 }
 
 impl Blocks {
+    /// Blocks whose middle lies within so much of a wall.
+    pub fn with_middles_within(walls: &[CityWall], reach_m: f64) -> Blocks {
+        Blocks::around(walls, (reach_m - HALF_DIAGONAL_M).max(0.0))
+    }
+
     /// Blocks for what lies within `margin_m` of the walls.
     pub fn around(walls: &[CityWall], margin_m: f64) -> Blocks {
         let ends = || walls.iter().flat_map(|w| [w.from, w.to]);
@@ -62,7 +68,7 @@ impl Blocks {
             let (a, b) = (wall.from[k].min(wall.to[k]), wall.from[k].max(wall.to[k]));
             index(k, a - margin_m)..=index(k, b + margin_m)
         };
-        let reach_m = margin_m + BLOCK_M * std::f64::consts::FRAC_1_SQRT_2;
+        let reach_m = margin_m + HALF_DIAGONAL_M;
         let middle = move |k: usize, i: u32| low[k] + (f64::from(i) + 0.5) * BLOCK_M;
         span(1)
             .flat_map(move |y| span(0).map(move |x| (x, y)))

@@ -8,7 +8,7 @@
 use super::city_walls::horizontal;
 use super::raster::angle;
 use crate::geometry::{Point3, Rotation3, Similarity, Vector3};
-use crate::limits::Limits;
+use crate::limits::{Limits, PlaceSearchLimits};
 use crate::planes::{Patch, Patches, Upright};
 use crate::robust::quantile;
 
@@ -20,8 +20,6 @@ pub struct CloudWall {
     pub normal: [f64; 2],
     pub sided: bool,
     pub length: f64,
-    /// Of all walls in its line, itself included: they lie on a wall of the city together or not at all.
-    pub line_length: f64,
     pub bottom: f64,
     pub top: f64,
     pub points: usize,
@@ -43,11 +41,6 @@ impl CloudWall {
     /// The place at a share of the length, 0 to 1.
     pub fn at(&self, share: f64) -> [f64; 2] {
         [0, 1].map(|k| self.middle[k] + (share - 0.5) * self.length * self.along()[k])
-    }
-
-    fn is_in_line(&self, other: &CloudWall, across: f64) -> bool {
-        let off: f64 = (0..2).map(|k| (other.middle[k] - self.middle[k]) * self.normal[k]).sum();
-        is_parallel(self, other, SAME_NORMAL_DEG) && off.abs() <= across
     }
 
     /// How firmly it ties a pose: a long wall tells the heading, many points that it is there.
@@ -72,8 +65,6 @@ const SAME_NORMAL_DEG: f64 = 10.0;
 const ACROSS_NOISES: f64 = 3.0;
 const ACROSS_SHARE: f64 = 0.004;
 const GAP_SHARE: f64 = 0.05;
-/// Walls of one street front step by this share of the cloud's radius and are in one line. Chosen.
-const LINE_SHARE: f64 = 0.01;
 /// Points beyond this share at either end of a wall are strays.
 const STRAY_SHARE: f64 = 0.03;
 
@@ -106,13 +97,11 @@ impl CloudWalls {
         }
         let mut walls: Vec<CloudWall> = growing.iter().filter_map(Growing::wall).collect();
         walls.sort_by(|a, b| b.strength(radius).total_cmp(&a.strength(radius)));
-        let in_line = |wall: &CloudWall| {
-            let others = walls.iter().filter(|other| wall.is_in_line(other, across + LINE_SHARE * radius));
-            others.map(|other| other.length).sum::<f64>()
-        };
-        let line_lengths: Vec<f64> = walls.iter().map(in_line).collect();
-        walls.iter_mut().zip(line_lengths).for_each(|(wall, length)| wall.line_length = length);
         CloudWalls { level_from_sfm, walls, radius }
+    }
+
+    pub fn strongest(&self, count: usize) -> &[CloudWall] {
+        &self.walls[..self.walls.len().min(count)]
     }
 
     /// How far from the middle walls reach, in plan.
@@ -122,9 +111,10 @@ impl CloudWalls {
     }
 
     /// The numbers of the walls that poses are tied to: the strongest, at most half of them (one at least) of one direction.
-    pub fn anchors(&self, count: usize, same_deg: f64) -> Vec<usize> {
+    pub fn anchors(&self, limits: &PlaceSearchLimits) -> Vec<usize> {
+        let (count, same_deg) = (limits.anchors, limits.one_direction_deg);
         let mut anchors: Vec<usize> = Vec::new();
-        for (number, wall) in self.walls.iter().enumerate() {
+        for (number, wall) in self.strongest(limits.most_walls).iter().enumerate() {
             let parallel = anchors.iter().filter(|&&a| is_parallel(&self.walls[a], wall, same_deg)).count();
             if anchors.len() < count && parallel < (count / 2).max(1) {
                 anchors.push(number);
@@ -195,7 +185,6 @@ impl Growing {
             normal,
             sided: self.sided,
             length: to - from,
-            line_length: to - from,
             bottom: quantile(&mut z, STRAY_SHARE)?,
             top: quantile(&mut z, 1.0 - STRAY_SHARE)?,
             points: self.points.len(),

@@ -8,12 +8,12 @@ use super::city_plan::CityPlan;
 use super::city_walls::CityWall;
 use super::cloud_walls::{CloudWall, CloudWalls};
 use super::heights::{HeightVote, stabbed};
-use super::meeting::{PLACES, met};
+use super::meeting::{Met, PLACES, met};
 use super::poses::PlanPose;
 use super::raster::{Question, classes_asked, height_code};
-use super::scales::weight;
 use super::sharpen::{class_cos, sharpened};
 use super::sight::Sights;
+use super::weights::weights;
 use crate::limits::{Limits, PlaceSearchLimits};
 
 /// What poses are judged by.
@@ -49,35 +49,35 @@ impl Judge<'_> {
     pub fn judged(&self, pose: &PlanPose) -> Option<JudgedPose> {
         let limits = &self.limits.place_search;
         let pose = sharpened(pose, self.cloud, &self.plan.index, limits);
-        let walls = &self.cloud.walls[..self.cloud.walls.len().min(limits.most_walls)];
+        let walls = self.cloud.strongest(limits.most_walls);
+        let weights = weights(walls, pose.scale, limits);
         let met = met(&self.plan.index, walls, &pose, limits.near_wall_m, class_cos(limits));
-        let votes = height_votes(walls, &met, pose.scale, limits);
-        let heights_m = stabbed(&votes)?;
+        let heights_m = stabbed(&height_votes(walls, &weights, &met, pose.scale, limits))?;
         let height_m = (heights_m[0] + heights_m[1]) / 2.0;
         let overlap = |wall: &CloudWall, city: &CityWall| {
             let seen = [wall.bottom, wall.top].map(|z| height_m + pose.scale * z);
-            let common = seen[1].min(city.top_m) - seen[0].max(city.foot_m);
+            let wall = [city.foot_m - limits.overshoot_m, city.top_m + limits.overshoot_m];
+            let common = seen[1].min(wall[1]) - seen[0].max(wall[0]);
             (common / (seen[1] - seen[0]).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
         };
         let hits = |of: &dyn Fn(&CloudWall, &CityWall) -> f64| -> Vec<f64> {
-            let share = |(wall, met): (&CloudWall, &[Option<&CityWall>; PLACES.len()])| {
+            let share = |(wall, met): (&CloudWall, &Met)| {
                 met.iter().flatten().map(|city| of(wall, city)).sum::<f64>() / PLACES.len() as f64
             };
             walls.iter().zip(&met).map(share).collect()
         };
         let blocked = self.sights.blocked(&pose, height_m, self.plan.city, self.limits);
-        let z_plan = self.z(&pose, walls, &hits(&|_, _| 1.0));
-        let z = self.z(&pose, walls, &hits(&overlap)) * (1.0 - limits.sight_weight * blocked);
+        let z_plan = self.z(&pose, &weights, &hits(&|_, _| 1.0));
+        let z = self.z(&pose, &weights, &hits(&overlap)) * (1.0 - limits.sight_weight * blocked);
         Some(JudgedPose { pose, heights_m, z_plan, z, blocked })
     }
 
-    fn z(&self, pose: &PlanPose, walls: &[CloudWall], hits: &[f64]) -> f64 {
-        let limits = &self.limits.place_search;
+    fn z(&self, pose: &PlanPose, weights: &[f64], hits: &[f64]) -> f64 {
         let (mut above, mut variance) = (0.0, 1.0);
-        for (wall, hit) in walls.iter().zip(hits) {
-            let height = height_code(wall.height() * pose.scale - limits.overshoot_m);
+        for ((wall, w), hit) in self.cloud.walls.iter().zip(weights).zip(hits) {
+            let height = height_code(wall.height() * pose.scale - self.limits.place_search.overshoot_m);
             let classes = classes_asked(wall.azimuth() + pose.heading_rad, wall.sided);
-            let (p, w) = (self.plan.raster.chance(Question { classes, height }), weight(wall, pose.scale, limits));
+            let p = self.plan.raster.chance(Question { classes, height });
             above += w * (hit - p);
             variance += w * w * p * (1.0 - p);
         }
@@ -88,16 +88,19 @@ impl Judge<'_> {
 /// What each place that lies on a wall allows; walls that were seen taller than they are have no say.
 fn height_votes(
     walls: &[CloudWall],
-    met: &[[Option<&CityWall>; PLACES.len()]],
+    weights: &[f64],
+    met: &[Met],
     scale: f64,
     limits: &PlaceSearchLimits,
 ) -> Vec<HeightVote> {
-    let vote = |wall: &CloudWall, city: &CityWall| HeightVote {
-        from_m: city.foot_m - limits.overshoot_m - scale * wall.bottom,
-        to_m: city.top_m + limits.overshoot_m - scale * wall.top,
-        weight: weight(wall, scale, limits) / PLACES.len() as f64,
-    };
-    let of_wall = |(wall, met): (_, &[Option<&CityWall>; PLACES.len()])| met.map(|m| m.map(|city| vote(wall, city)));
-    let votes = walls.iter().zip(met).flat_map(of_wall).flatten();
-    votes.filter(|vote| vote.from_m <= vote.to_m).collect()
+    let mut votes = Vec::with_capacity(PLACES.len() * walls.len());
+    for ((wall, weight), met) in walls.iter().zip(weights).zip(met) {
+        votes.extend(met.iter().flatten().map(|city| HeightVote {
+            from_m: city.foot_m - limits.overshoot_m - scale * wall.bottom,
+            to_m: city.top_m + limits.overshoot_m - scale * wall.top,
+            weight: weight / PLACES.len() as f64,
+        }));
+    }
+    votes.retain(|vote| vote.from_m <= vote.to_m);
+    votes
 }

@@ -11,6 +11,9 @@ use super::wall_index::WallIndex;
 /// Places of a wall, as shares of its length.
 pub const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
+/// What each place of a wall lies on.
+pub type Met<'i> = [Option<&'i CityWall>; PLACES.len()];
+
 /// Walls of the city that a place of a wall may lie on, with their distances.
 pub fn candidates<'i>(
     index: &'i WallIndex,
@@ -32,13 +35,7 @@ pub fn candidates<'i>(
 }
 
 /// For each wall and place of a cloud under a pose the tallest wall that it lies on.
-pub fn met<'i>(
-    index: &'i WallIndex,
-    walls: &[CloudWall],
-    pose: &PlanPose,
-    reach_m: f64,
-    min_cos: f64,
-) -> Vec<[Option<&'i CityWall>; PLACES.len()]> {
+pub fn met<'i>(index: &'i WallIndex, walls: &[CloudWall], pose: &PlanPose, reach_m: f64, min_cos: f64) -> Vec<Met<'i>> {
     let tallest = |wall: &CloudWall, share: f64| {
         let place = pose.apply(wall.at(share));
         let found = candidates(index, wall, pose, place, reach_m, min_cos);

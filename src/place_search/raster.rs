@@ -41,7 +41,7 @@ impl Raster {
         for wall in walls {
             raster.mark(wall, limits);
         }
-        raster.count_chance(&Blocks::around(walls, limits.street_m));
+        raster.count_chance(&Blocks::with_middles_within(walls, limits.street_m));
         raster
     }
 
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn chance_is_the_share_of_the_street_that_answers() {
         let raster = Raster::new(&[wall()], &PlaceSearchLimits::default());
-        // Some 11 x 1.5 m of some 34 x 24 m, in blocks of 8 m.
+        // Some 11 x 1.5 m of some 34 x 24 m, in blocks of 4 m.
         let chance = |angle, height_m| {
             raster.chance(Question { classes: classes_asked(angle, true), height: height_code(height_m) })
         };

@@ -1,4 +1,4 @@
-//! The scales that are scanned, and what a wall of the cloud weighs at each.
+//! The scales that are scanned.
 
 use super::cloud_walls::{CloudWall, CloudWalls};
 use super::prior::PlacePrior;
@@ -25,12 +25,4 @@ pub fn scale_steps([least, most]: [f64; 2], cloud: &CloudWalls, limits: &PlaceSe
         return Vec::new();
     }
     (0..=steps as usize).map(|k| least + (most - least) * k as f64 / steps.max(1.0)).collect()
-}
-
-/// How much a wall weighs: the root of the independent looks that its length is worth; less than one look as such, so that a cloud that
-/// shrinks weighs nothing. Walls in one line share the looks of one wall: ground that is taken for a wall under a wrong up is many pieces in a line.
-pub fn weight(wall: &CloudWall, scale: f64, limits: &PlaceSearchLimits) -> f64 {
-    let most = limits.most_looks * wall.length / wall.line_length;
-    let looks = (wall.length * scale / limits.metres_of_look).min(most);
-    if looks < 1.0 { looks } else { looks.sqrt() }
 }

@@ -17,7 +17,7 @@ use super::cloud_walls::{CloudWall, CloudWalls};
 use super::poses::{PlanPose, ScoredPose, distinct};
 use super::prior::{PlacePrior, wrapped};
 use super::raster::{Question, Raster, angle, classes_asked, height_code};
-use super::scales::weight;
+use super::weights::weights;
 use crate::limits::PlaceSearchLimits;
 use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
 
@@ -55,7 +55,7 @@ impl Scan<'_> {
         let mut all = Scanned { poses: Vec::new(), count: 0 };
         for (round, some) in blocks.chunks(ROUND).enumerate() {
             check_cancelled(observer)?;
-            observer.progress(Stage::Search, (round * ROUND * BLOCK).min(long.len()), long.len());
+            observer.progress(Stage::Places, (round * ROUND * BLOCK).min(long.len()), long.len());
             let found: Vec<Scanned> = some.par_iter().map(|walls| self.block(walls, &tied)).collect();
             for scanned in found {
                 all.count += scanned.count;
@@ -139,14 +139,14 @@ impl Scan<'_> {
         for wall in 0..first {
             met += if meets(wall, 0) { step.weights[wall] } else { 0.0 };
         }
-        if met == 0.0 {
+        if met < step.least_met {
             return None;
         }
         for wall in 0..first {
             let ends = u8::from(meets(wall, 1)) + u8::from(meets(wall, 2));
             met += f64::from(ends) * step.weights[wall];
         }
-        if met < step.least_met {
+        if met < PLACES.len() as f64 * step.least_met {
             return None;
         }
         for wall in first..step.weights.len() {
@@ -171,7 +171,7 @@ struct Tied {
     /// Step by step.
     weights: Vec<f64>,
     heights: Vec<u64>,
-    /// For each step what the walls that are looked at first must meet, in thirds of a wall.
+    /// For each step the weight that the walls that are looked at first must meet, with their middles and with all places.
     least_met: Vec<f64>,
 }
 
@@ -185,14 +185,20 @@ struct StepOf<'a> {
 
 impl Tied {
     fn new(scan: &Scan, anchor: usize) -> Tied {
-        let (limits, walls) = (scan.limits, &scan.cloud.walls);
-        let strong = walls.iter().enumerate().filter(|(number, _)| *number != anchor).map(|(_, wall)| *wall);
-        let others: Vec<CloudWall> = strong.take(limits.most_walls).collect();
-        let each = || scan.scales.iter().flat_map(|&scale| others.iter().map(move |wall| (wall, scale)));
-        let weights: Vec<f64> = each().map(|(wall, scale)| weight(wall, scale, limits)).collect();
-        let heights = each().map(|(wall, scale)| height_code(wall.height() * scale - limits.overshoot_m)).collect();
+        let (limits, walls) = (scan.limits, scan.cloud.strongest(scan.limits.most_walls));
+        let mut others = walls.to_vec();
+        others.remove(anchor);
+        let of_step = |&scale: &f64| {
+            // The anchor shares the looks of its line: what lies beside it on the same wall says little.
+            let mut weights = weights(walls, scale, limits);
+            weights.remove(anchor);
+            weights
+        };
+        let weights: Vec<f64> = scan.scales.iter().flat_map(of_step).collect();
+        let each = scan.scales.iter().flat_map(|&scale| others.iter().map(move |wall| wall.height() * scale));
+        let heights = each.map(|height_m| height_code(height_m - limits.overshoot_m)).collect();
         let first = |of_step: &[f64]| of_step.iter().take(limits.looked_at_first).sum::<f64>();
-        let least = |of_step: &[f64]| limits.least_share * PLACES.len() as f64 * first(of_step);
+        let least = |of_step: &[f64]| limits.least_share * first(of_step);
         let least_met = weights.chunks(others.len().max(1)).map(least).collect();
         Tied { anchor: walls[anchor], weights, heights, least_met, others }
     }

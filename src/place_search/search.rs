@@ -110,7 +110,7 @@ fn search_views(
     for View { upright, cloud } in views {
         let scales = scale_steps(scale_range(cloud, tallest_m, prior, own), cloud, own);
         let scan = Scan { plan, cloud, scales: &scales, prior, limits: own };
-        let scanned = scan.run(&cloud.anchors(own.anchors, own.one_direction_deg), observer)?;
+        let scanned = scan.run(&cloud.anchors(own), observer)?;
         let sights = Sights::new(patches, cloud, limits);
         let judge = Judge { plan, cloud, sights: &sights, limits };
         let judged: Vec<JudgedPose> = scanned.poses.par_iter().filter_map(|s| judge.judged(&s.pose)).collect();

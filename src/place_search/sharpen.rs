@@ -11,8 +11,8 @@ use nalgebra::{Matrix4, Vector4};
 use super::cloud_walls::CloudWalls;
 use super::meeting::{PLACES, candidates};
 use super::poses::PlanPose;
-use super::scales::weight;
 use super::wall_index::WallIndex;
+use super::weights::weights;
 use crate::limits::PlaceSearchLimits;
 use crate::robust::tukey_weight;
 
@@ -21,14 +21,16 @@ const WALL_SIGMA_M: f64 = 0.3;
 
 pub fn sharpened(start: &PlanPose, cloud: &CloudWalls, index: &WallIndex, limits: &PlaceSearchLimits) -> PlanPose {
     let min_cos = class_cos(limits);
+    let walls = cloud.strongest(limits.most_walls);
+    let weights = weights(walls, start.scale, limits);
     let mut pose = *start;
     for &gate_m in limits.gates_m {
         let radius_m = cloud.radius * pose.scale;
         let held = (WALL_SIGMA_M / limits.step_m).powi(2);
         let mut normal = Matrix4::identity() * held;
         let mut right = -held * between(start, &pose, cloud.radius);
-        for wall in cloud.walls.iter().take(limits.most_walls) {
-            let each = weight(wall, pose.scale, limits) / PLACES.len() as f64;
+        for (wall, weight) in walls.iter().zip(&weights) {
+            let each = weight / PLACES.len() as f64;
             for share in PLACES {
                 let place = pose.apply(wall.at(share));
                 let found = candidates(index, wall, &pose, place, gate_m, min_cos);

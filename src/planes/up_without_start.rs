@@ -47,6 +47,10 @@ fn axes(patches: &Patches, limits: &Limits) -> Vec<UpCandidate> {
     let weak_too = Limits { up: UpLimits { comparable_share: limits.up.axis_share, ..limits.up }, ..*limits };
     let (mut axes, mut found): (Vec<Vector3<f64>>, Vec<UpCandidate>) = (Vec::new(), Vec::new());
     for candidate in up_candidates(patches, &anywhere, &weak_too) {
+        // Without walls and floors the guess comes back.
+        if candidate.patches <= 0.0 {
+            continue;
+        }
         let is_along = |axis: &Vector3<f64>| axis.dot(&candidate.up).abs() > SAME_RAD.cos();
         if !axes.iter().any(is_along) {
             let is_near = |axis: &Vector3<f64>| axis.dot(&candidate.up).abs() > AXES_APART_RAD.cos();

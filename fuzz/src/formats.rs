@@ -9,16 +9,49 @@ pub struct Format {
     pub name: &'static str,
     pub read: Reader,
     pub seeds: &'static [Source],
+    pub bulk: Bulk,
+}
+
+/// How much a byte of a file may stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bulk {
+    /// What it says.
+    Plain,
+    /// A few bytes show a whole mesh again: the readers of cities allow 64 corners a byte.
+    Repeated,
+    /// Points are packed: the readers of clouds allow 8 a byte.
+    Packed,
+}
+
+impl Bulk {
+    /// Memory that a reader may hold for each byte of its input.
+    pub fn bytes_of_a_byte(self) -> usize {
+        match self {
+            Bulk::Plain => 4,
+            // A corner with its index and its share of a triangle, twice while they are turned into the model.
+            Bulk::Repeated => 4 + 64 * 64,
+            // A point with its colour and further values.
+            Bulk::Packed => 4 + 8 * 64,
+        }
+    }
 }
 
 const fn format(name: &'static str, read: Reader, seeds: &'static [Source]) -> Format {
-    Format { name, read, seeds }
+    Format { name, read, seeds, bulk: Bulk::Plain }
+}
+
+const fn repeated(name: &'static str, read: Reader, seeds: &'static [Source]) -> Format {
+    Format { name, read, seeds, bulk: Bulk::Repeated }
+}
+
+const fn packed(name: &'static str, read: Reader, seeds: &'static [Source]) -> Format {
+    Format { name, read, seeds, bulk: Bulk::Packed }
 }
 
 /// In the order of issue and manual: cities, reconstructions, what places them, and whatever it may be.
 pub static FORMATS: [Format; 29] = [
-    format("cityjson", city, CITYJSON),
-    format(
+    repeated("cityjson", city, CITYJSON),
+    repeated(
         "cityjsonseq",
         city,
         &[
@@ -27,7 +60,7 @@ pub static FORMATS: [Format; 29] = [
             Beside("city/small.city.jsonl"),
         ],
     ),
-    format("citygml", city, CITYGML),
+    repeated("citygml", city, CITYGML),
     format(
         "obj",
         city,
@@ -37,12 +70,12 @@ pub static FORMATS: [Format; 29] = [
             File("tests/data/city/negative_index.obj"),
         ],
     ),
-    format(
+    repeated(
         "gltf",
         city,
         &[File("tests/data/city/good.gltf"), File("tests/data/city/good.glb"), Beside("tiles/v11/0.glb")],
     ),
-    format(
+    repeated(
         "tiles",
         city,
         &[
@@ -59,14 +92,14 @@ pub static FORMATS: [Format; 29] = [
         &[Folder("fuzz/seeds/shapefile", "houses.shp"), BesideFolder("footprints", "test_buildings.shp")],
     ),
     format("geopackage", city, &[Each("fuzz/seeds/geopackage")]),
-    format("city_contents", city_contents, CITY),
+    repeated("city_contents", city_contents, CITY),
     format("colmap_text", reconstruction, &[Folder("fuzz/seeds/colmap_text", "")]),
     format("colmap_binary", reconstruction, COLMAP_BINARY),
     format("ply", reconstruction, &[Each("fuzz/seeds/ply")]),
     format("las", reconstruction, &[File("tests/data/formats/autzen.las")]),
-    format("laz", reconstruction, &[File("tests/data/formats/autzen.laz"), Beside("points/32-1-472-150-76.laz")]),
-    format("copc", reconstruction, &[File("tests/data/formats/autzen.copc.laz")]),
-    format("e57", reconstruction, &[Each("fuzz/seeds/e57"), Beside("points/two_scans.e57")]),
+    packed("laz", reconstruction, &[File("tests/data/formats/autzen.laz"), Beside("points/32-1-472-150-76.laz")]),
+    packed("copc", reconstruction, &[File("tests/data/formats/autzen.copc.laz")]),
+    packed("e57", reconstruction, &[Each("fuzz/seeds/e57"), Beside("points/two_scans.e57")]),
     format("opensfm", reconstruction, &[Each("fuzz/seeds/opensfm")]),
     format("nerfstudio", reconstruction, &[Folder("fuzz/seeds/nerfstudio", "transforms.json")]),
     format("openmvg", reconstruction, &[Each("fuzz/seeds/openmvg")]),
@@ -77,7 +110,7 @@ pub static FORMATS: [Format; 29] = [
     format("positions", positions, POSITIONS),
     format("control", control_points, &[Each("fuzz/seeds/control")]),
     format("crs", crs_of_text, &[Each("fuzz/seeds/crs")]),
-    format("inspect", inspection, ANY),
+    repeated("inspect", inspection, ANY),
 ];
 
 const CITYJSON: &[Source] = &[Each("fuzz/seeds/cityjson"), File("tests/data/formats/city/DH_01_subs_v1.0.city.json")];

@@ -11,11 +11,8 @@ use crate::damage::damage;
 use crate::formats::Format;
 use crate::memory;
 
-/// Memory that a reader may hold for each byte of its input.
-const BYTES_OF_A_BYTE: usize = 4;
-
-/// ... and whatever the input, bytes: buffers of readers and stacks of their pools. Measured: see the README.
-pub const FREE_BYTES: usize = 8 << 20;
+/// What a reader may hold whatever the input, bytes: buffers, pieces of clouds, stacks of pools. Measured: see the README.
+const FREE_BYTES: usize = 8 << 20;
 
 /// What became of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +68,7 @@ pub fn tried(format: &Format, case: &Case, folder: &Path, spare: &Path) -> (Mete
     };
     let answer = catch_unwind(AssertUnwindSafe(|| (format.read)(&path, spare, &mut meter)));
     let seen = answer.unwrap_or_else(|_| Err(format!("panic: {}", last_panic())));
-    let allowed = BYTES_OF_A_BYTE * case.bytes() + FREE_BYTES;
+    let allowed = format.bulk.bytes_of_a_byte() * case.bytes() + FREE_BYTES;
     let seen = seen.and_then(|seen| match meter.most_bytes > allowed {
         true => Err(format!("memory: {} bytes for a file of {}", meter.most_bytes, case.bytes())),
         false => Ok(seen),

@@ -132,7 +132,7 @@ impl<'a> Shaper<'a> {
         let made = triangulate(&self.flat, &face.ring_ends())?;
         let first_new = self.vertices.len() + self.new_vertices.len();
         self.new_vertices.extend(made.crossings.iter().map(|[x, y]| centroid + right * *x + up * *y));
-        let vertex_of = |at: usize| rings.get(at).copied().unwrap_or((first_new + at - rings.len()) as u32);
+        let vertex_of = |at: usize| rings.get(at).copied().unwrap_or_else(|| (first_new + at - rings.len()) as u32);
         self.triangles.extend(made.triangles.iter().map(|triangle| triangle.map(vertex_of)));
         self.defects.extend(made.overlaps.then_some((face.number, CityDefect::SelfIntersecting)));
         Some(!made.overlaps)

@@ -7,11 +7,19 @@ use cityweld::{Reconstruction, read_reconstruction, write_colmap, write_ply};
 
 /// Writes the points as PLY, and the whole as COLMAP where it came as that.
 pub fn check(sfm: &Reconstruction, folder: &Path) -> Result<(), String> {
+    // Poses alone are read of some formats, and no format of points holds none.
+    if sfm.points.is_empty() {
+        return Ok(());
+    }
     let path = folder.join("again.ply");
     if was_written(write_ply(&path, sfm))? {
         check_points(sfm, &again(&path)?)?;
     }
     let model = folder.join("again");
+    // What an earlier case has left there would be taken for a part of this one.
+    if model.exists() {
+        std::fs::remove_dir_all(&model).map_err(|error| error.to_string())?;
+    }
     if sfm.colmap.is_some() && was_written(write_colmap(&model, sfm))? {
         let read = again(&model)?;
         check_points(sfm, &read)?;

@@ -67,7 +67,7 @@ pub static FORMATS: [Format; 29] = [
         &[
             File("tests/data/city/good.obj"),
             File("tests/data/city/continued.obj"),
-            File("tests/data/city/negative_index.obj"),
+            File("tests/data/city/bom_crlf.obj"),
         ],
     ),
     repeated(
@@ -181,5 +181,13 @@ mod tests {
             assert_eq!(FORMATS.iter().filter(|other| other.name == format.name).count(), 1);
         }
         assert!(named("dwg").is_err());
+    }
+
+    #[test]
+    fn every_format_has_a_target_of_cargo_fuzz() {
+        let manifest = include_str!("../Cargo.toml");
+        for format in &FORMATS {
+            assert!(manifest.contains(&format!("path = \"fuzz_targets/{}.rs\"", format.name)), "{}", format.name);
+        }
     }
 }

@@ -13,6 +13,7 @@ pub mod chance;
 pub mod formats;
 pub mod memory;
 pub mod parent;
+pub mod target;
 pub mod trial;
 pub mod worker;
 

@@ -10,7 +10,7 @@ static HELD: AtomicUsize = AtomicUsize::new(0);
 static MOST: AtomicUsize = AtomicUsize::new(0);
 
 /// Beyond this nothing is given, bytes, so that a reader that fills the memory ends its own process and no other.
-const LIMIT: usize = 3 << 30;
+const LIMIT: usize = 512 << 20;
 
 /// Bytes held now; the most is counted from here.
 pub fn begin() -> usize {

@@ -12,8 +12,9 @@ const POINTS_OF_ANY_FILE: u64 = 1 << 16;
 /// Records before the points, with the name of what they hold, and their length.
 const RECORD_HEAD_BYTES: u64 = 54;
 
-/// Those behind the points have longer ones (LAS 1.4 R15, table 9): where the header says where they begin and how many there are.
-const HEADER_BYTES_OF_1_4: u64 = 375;
+/// Those behind the points have longer ones (LAS 1.4 R15, table 9): the version that brought them, and where the header says where they
+/// begin and how many there are.
+const RECORDS_BEHIND_SINCE: [u8; 2] = [1, 4];
 const RECORDS_BEHIND_AT: u64 = 235;
 const LONG_RECORD_HEAD_BYTES: u64 = 60;
 
@@ -30,8 +31,8 @@ pub(super) fn check_head(file: &mut (impl Read + Seek), length: u64) -> Result<(
     if records.saturating_mul(RECORD_HEAD_BYTES) > points_at - header_bytes {
         return Err(format!("{records} records cannot lie before the points, at byte {points_at}"));
     }
-    // Records behind the points came with version 1.4.
-    if header_bytes < HEADER_BYTES_OF_1_4 { Ok(()) } else { check_records_behind(file, length) }
+    // Whatever length it says of its header.
+    if head[24..26] < RECORDS_BEHIND_SINCE[..] { Ok(()) } else { check_records_behind(file, length) }
 }
 
 /// Records behind the points, whose lengths have 64 bits.

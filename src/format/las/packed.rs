@@ -34,7 +34,7 @@ pub(super) fn check_packed(file: &mut (impl Read + Seek), header: &las::Header, 
         return Ok(());
     }
     let chunks = chunks_of(file, &packing, points_at, header.number_of_points());
-    let chunks = chunks.ok_or("chunks of any size, and no table of them")?;
+    let chunks = chunks.ok_or("the table of the packed chunks cannot be read")?;
     check_layers(file, &packing, points_at + OFFSET_BYTES, chunks, length)
 }
 
@@ -72,20 +72,22 @@ fn check_table(file: &mut (impl Read + Seek), packing: &LazVlr, points_at: u64, 
     }
 }
 
-/// Chunks that are decoded to come to all points; `None` where nothing tells it.
+/// Chunks that are decoded to come to all points; `None` where the table cannot be read, after which the crate would begin anywhere.
 fn chunks_of(file: &mut (impl Read + Seek), packing: &LazVlr, points_at: u64, points: u64) -> Option<u64> {
+    file.seek(SeekFrom::Start(points_at)).ok()?;
+    let table = ChunkTable::read_from(file, packing).ok()?;
     if !packing.uses_variable_size_chunks() {
         return Some(points.div_ceil(u64::from(packing.chunk_size().max(1))));
     }
-    file.seek(SeekFrom::Start(points_at)).ok()?;
-    let table = ChunkTable::read_from(file, packing).ok()?;
     let mut left = points;
     let is_needed = |chunk: &u64| {
         let is_needed = left > 0;
         left = left.saturating_sub(*chunk);
         is_needed
     };
-    Some(table.as_ref().iter().map(|chunk| chunk.point_count).take_while(is_needed).count() as u64)
+    let needed = table.as_ref().iter().map(|chunk| chunk.point_count).take_while(is_needed).count() as u64;
+    // The decoder looks into one more, where the table knows fewer points.
+    Some(needed + u64::from(left > 0))
 }
 
 fn check_layers(

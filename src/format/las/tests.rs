@@ -112,6 +112,7 @@ fn headers_that_lie_are_refused_before_memory_is_taken() {
     }
 }
 
+const HEADER_BYTES_AT: usize = 94;
 /// Where the header of version 1.4 says where records behind the points begin; the number of those follows.
 const RECORDS_BEHIND_AT: usize = 235;
 
@@ -129,8 +130,13 @@ fn records_behind_the_points_that_lie_about_their_length_are_refused() {
     assert!(message.contains("record 2 of 2 behind the points"), "{message}");
     for length in [6, 1 << 37, u64::MAX] {
         bytes[end as usize + 20..end as usize + 28].copy_from_slice(&u64::to_le_bytes(length));
-        let message = read_las(changed(&bytes, RECORDS_BEHIND_AT + 8, &[1, 0, 0, 0]).path()).unwrap_err().to_string();
-        assert!(message.contains("record 1 of 1 behind the points") && message.contains("beyond"), "{message}");
+        bytes[RECORDS_BEHIND_AT + 8] = 1;
+        // The second says that its header is one of 1.2.
+        for header_bytes in [375u16, 227] {
+            let lying = changed(&bytes, HEADER_BYTES_AT, &header_bytes.to_le_bytes());
+            let message = read_las(lying.path()).unwrap_err().to_string();
+            assert!(message.contains("record 1 of 1 behind the points") && message.contains("beyond"), "{message}");
+        }
     }
 }
 
@@ -150,6 +156,9 @@ fn packed_points_that_lie_about_their_chunks_are_refused_before_memory_is_taken(
             let lying = changed(&bytes, first_layer, &0xF000_0000u32.to_le_bytes());
             let message = read_las(lying.path()).unwrap_err().to_string();
             assert!(message.contains("chunk 1 of 1, at byte") && message.contains("beyond the file's"), "{message}");
+            // The table lies beyond the file; the crate would begin to unpack there.
+            let message = read_las(changed(&bytes, points_at, &[0xFF; 4]).path()).unwrap_err().to_string();
+            assert!(message.contains("the table of the packed chunks cannot be read"), "{message}");
         }
     }
 }

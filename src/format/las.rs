@@ -3,15 +3,16 @@
 //! The crates believe counts and lengths; they are held against the bytes of the file first (`check.rs`, `packed.rs`).
 
 mod check;
+mod depth;
 mod packed;
 
 use std::io::{BufReader, Seek, SeekFrom};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use las::crs::GeoTiffData;
 
 use self::check::{check_count, check_head};
+use self::depth::{Shallow, on_deep_stack};
 use self::packed::check_packed;
 use super::file::open_regular;
 use super::ply::{CloudField, FieldKind};
@@ -67,15 +68,15 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
     check_head(&mut file, length).map_err(|problem| fault("header", problem))?;
     file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
     // The decoder of LAZ panics on some damaged streams, and on some descriptions of them.
-    let decoded = catch_unwind(AssertUnwindSafe(|| {
+    let decoded = on_deep_stack(|| {
         let header = las::Header::new(BufReader::new(&file)).map_err(|error| fault("header", told(&error)))?;
         check_count(&header, length).map_err(|problem| fault("header", problem))?;
         check_packed(&mut BufReader::new(&file), &header, length).map_err(|problem| fault("points", problem))?;
         (&file).seek(SeekFrom::Start(0)).map_err(unreadable)?;
-        let reader = las::Reader::new(BufReader::new(file)).map_err(|error| fault("header", told(&error)))?;
+        let reader = las::Reader::new(Shallow::new(file)).map_err(|error| fault("header", told(&error)))?;
         points(path, reader, &header)
-    }));
-    decoded.unwrap_or_else(|_| Err(fault("points", "the packed points are damaged".into())))
+    });
+    decoded.unwrap_or_else(|| Err(fault("points", "the packed points are damaged".into())))
 }
 
 fn points(path: &Path, mut reader: las::Reader, header: &las::Header) -> Result<LasCloud, LasError> {

@@ -20,6 +20,9 @@ const OFFSET_BYTES: u64 = 8;
 const IN_CHUNKS: u8 = 2;
 const IN_LAYERS: u8 = 3;
 
+/// Items from this version on are packed in layers.
+const FIRST_LAYERED: u16 = 3;
+
 /// `Ok` as well where there is nothing to check: the crate says what is missing.
 pub(super) fn check_packed(file: &mut (impl Read + Seek), header: &las::Header, length: u64) -> Result<(), String> {
     let record =
@@ -30,8 +33,11 @@ pub(super) fn check_packed(file: &mut (impl Read + Seek), header: &las::Header, 
     if [IN_CHUNKS, IN_LAYERS].contains(way) {
         check_table(file, &packing, points_at, length)?;
     }
-    if *way != IN_LAYERS {
-        return Ok(());
+    // The crate goes by the versions of the items, whatever the record says.
+    match (*way, packing.items().iter().any(|item| item.version() >= FIRST_LAYERED)) {
+        (IN_LAYERS, _) => {}
+        (_, true) => return Err("points are packed in layers, and said not to be".into()),
+        (_, false) => return Ok(()),
     }
     let chunks = chunks_of(file, &packing, points_at, header.number_of_points());
     let chunks = chunks.ok_or("the table of the packed chunks cannot be read")?;

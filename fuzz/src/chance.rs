@@ -3,6 +3,9 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+/// Damage that multiplies damage would else fill the memory itself.
+const MOST_COPIED_BYTES: usize = 1 << 20;
+
 pub struct Chance(ChaCha8Rng);
 
 impl Chance {
@@ -45,5 +48,10 @@ impl Chance {
     /// A small count of bytes, records or copies: mostly 1, seldom hundreds.
     pub fn few(&mut self) -> usize {
         1 << self.below(10).min(self.below(10))
+    }
+
+    /// Copies of something so long, bytes, which together stay short.
+    pub fn copies(&mut self, bytes: usize) -> usize {
+        self.few().min(1 + MOST_COPIED_BYTES / (bytes + 1))
     }
 }

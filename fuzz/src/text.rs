@@ -11,7 +11,8 @@ pub fn spoil(bytes: &mut Vec<u8>, chance: &mut Chance) {
         0 => drop(lines.remove(at)),
         1 => {
             let copy = lines[at].clone();
-            lines.splice(at..at, std::iter::repeat_n(copy, chance.few()));
+            let copies = chance.copies(copy.len());
+            lines.splice(at..at, std::iter::repeat_n(copy, copies));
         }
         2 => {
             let second = line(&lines, chance);
@@ -46,7 +47,11 @@ fn spoiled_line(line: &[u8], chance: &mut Chance) -> Vec<u8> {
     let [at, second] = [(); 2].map(|()| chance.below(words.len()));
     match chance.below(8) {
         0 => drop(words.remove(at)),
-        1 => words.splice(at..at, std::iter::repeat_n(words[at].clone(), chance.few())).for_each(drop),
+        1 => {
+            let copy = words[at].clone();
+            let copies = chance.copies(copy.len());
+            words.splice(at..at, std::iter::repeat_n(copy, copies));
+        }
         2 => words.swap(at, second),
         3 => words.truncate(at),
         _ => words[at] = spoiled(&words[at], chance),

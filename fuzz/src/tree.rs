@@ -74,7 +74,8 @@ pub fn spoil(root: &mut Node, written: Written, chance: &mut Chance) {
     match chance.below(5) {
         0 => drop(node.children.remove(at)),
         1 => {
-            let copies = if node.children[at].count() <= SMALL { chance.few() } else { 1 };
+            let copies =
+                if node.children[at].count() <= SMALL { chance.copies(written(&node.children[at]).len()) } else { 1 };
             let copy = node.children[at].clone();
             node.children.splice(at..at, std::iter::repeat_n(copy, copies));
         }

@@ -87,8 +87,8 @@ impl<'a> Shaper<'a> {
             self.defects.push((face.number, CityDefect::NonPlanar { worst_m: off_m }));
             return self.add_split(first, &face);
         }
-        // Triangles of flat rings cover what these wind round, unless they overlap.
-        let area = if is_clean { area_vector.norm() - hole_area } else { self.covered_area(first) };
+        // Triangles of flat rings cover what these wind round, unless they overlap. A hole as large as its polygon rounds below zero.
+        let area = if is_clean { (area_vector.norm() - hole_area).max(0.0) } else { self.covered_area(first) };
         let triangles = first as u32..self.triangles.len() as u32;
         let Face { outline, holes, object, kind, .. } = face;
         self.facets.push(Facet { outline, holes, plane, area, object, kind, triangles });
@@ -132,7 +132,7 @@ impl<'a> Shaper<'a> {
         let made = triangulate(&self.flat, &face.ring_ends())?;
         let first_new = self.vertices.len() + self.new_vertices.len();
         self.new_vertices.extend(made.crossings.iter().map(|[x, y]| centroid + right * *x + up * *y));
-        let vertex_of = |at: usize| rings.get(at).copied().unwrap_or((first_new + at - rings.len()) as u32);
+        let vertex_of = |at: usize| rings.get(at).copied().unwrap_or_else(|| (first_new + at - rings.len()) as u32);
         self.triangles.extend(made.triangles.iter().map(|triangle| triangle.map(vertex_of)));
         self.defects.extend(made.overlaps.then_some((face.number, CityDefect::SelfIntersecting)));
         Some(!made.overlaps)

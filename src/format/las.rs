@@ -1,12 +1,19 @@
 //! Points of LAS files, LAZ and COPC among them (ASPRS LAS 1.4 R15), with the `las` crate, a piece at a time.
 //!
-//! The crate believes the header's count; it is held against the bytes of the file first.
+//! The crates believe counts and lengths; they are held against the bytes of the file first (`check.rs`, `packed.rs`).
 
-use std::io::{BufReader, Read, Seek, SeekFrom};
+mod check;
+mod depth;
+mod packed;
+
+use std::io::{BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use las::crs::GeoTiffData;
 
+use self::check::{check_count, check_head};
+use self::depth::{Shallow, on_deep_stack};
+use self::packed::check_packed;
 use super::file::open_regular;
 use super::ply::{CloudField, FieldKind};
 use super::wkt::{WktCrs, WktUnit, wkt_crs};
@@ -49,42 +56,38 @@ pub fn is_las(start: &[u8]) -> bool {
     start.starts_with(b"LASF")
 }
 
-/// Points that are decoded at once.
+/// Points that are decoded at once, and bytes of them: a format may have 64 KiB for each.
 const POINTS_AT_ONCE: u64 = 1 << 16;
-
-/// Points that a byte of a compressed file may hold. Chosen: clouds as they are come to one in two to four bytes; a file of the
-/// same point again and again, which is none, to a thousand in one.
-const MOST_POINTS_OF_A_BYTE: u64 = 8;
-
-/// Points of any compressed file that are not asked about.
-const POINTS_OF_ANY_FILE: u64 = 1 << 16;
-
-/// Records before the points, with the name of what they hold, and their length.
-const RECORD_HEAD_BYTES: u64 = 54;
+const BYTES_AT_ONCE: u64 = 4 << 20;
 
 pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
     let unreadable = |source| LasError::Unreadable { path: path.into(), source };
-    let fault = |place: String, problem: String| LasError::Malformed { path: path.into(), place, problem };
+    let fault = |place: &str, problem: String| LasError::Malformed { path: path.into(), place: place.into(), problem };
     let mut file = open_regular(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
-    check_head(&mut file, length).map_err(|problem| fault("header".into(), problem))?;
+    check_head(&mut file, length).map_err(|problem| fault("header", problem))?;
     file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
-    let mut reader = las::Reader::new(BufReader::new(file)).map_err(|error| fault("header".into(), told(&error)))?;
-    let header = reader.header().clone();
-    check_count(&header, length).map_err(|problem| fault("header".into(), problem))?;
-    // The decoder of LAZ panics on some damaged streams.
-    let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| points(path, &mut reader, &header)));
-    decoded.unwrap_or_else(|_| Err(fault("points".into(), "the packed points are damaged".into())))
+    // The decoder of LAZ panics on some damaged streams, and on some descriptions of them.
+    let decoded = on_deep_stack(|| {
+        let header = las::Header::new(BufReader::new(&file)).map_err(|error| fault("header", told(&error)))?;
+        check_count(&header, length).map_err(|problem| fault("header", problem))?;
+        check_packed(&mut BufReader::new(&file), &header, length).map_err(|problem| fault("points", problem))?;
+        (&file).seek(SeekFrom::Start(0)).map_err(unreadable)?;
+        let reader = las::Reader::new(Shallow::new(file)).map_err(|error| fault("header", told(&error)))?;
+        points(path, reader, &header)
+    });
+    decoded.unwrap_or_else(|| Err(fault("points", "the packed points are damaged".into())))
 }
 
-fn points(path: &Path, reader: &mut las::Reader, header: &las::Header) -> Result<LasCloud, LasError> {
+fn points(path: &Path, mut reader: las::Reader, header: &las::Header) -> Result<LasCloud, LasError> {
     let fault = |place: String, problem: String| LasError::Malformed { path: path.into(), place, problem };
     let count = header.number_of_points();
     let mut cloud = Collector::new(header);
+    let at_once = (BYTES_AT_ONCE / u64::from(header.point_format().len().max(1))).clamp(1, POINTS_AT_ONCE);
     let mut read = 0;
     while read < count {
-        let piece = reader.read_points(POINTS_AT_ONCE).map_err(|error| {
-            fault(format!("point {read} to {} of {count}", (read + POINTS_AT_ONCE).min(count)), told(&error))
+        let piece = reader.read_points(at_once).map_err(|error| {
+            fault(format!("point {read} to {} of {count}", (read + at_once).min(count)), told(&error))
         })?;
         if piece.is_empty() {
             return Err(fault(format!("point {read} of {count}"), "the file ends before".into()));
@@ -97,46 +100,6 @@ fn points(path: &Path, reader: &mut las::Reader, header: &las::Header) -> Result
 
 fn told(error: &las::Error) -> String {
     super::escaped(&error.to_string()).to_string()
-}
-
-/// Offsets and lengths that the crate takes memory for, against the length of the file.
-fn check_head(file: &mut (impl Read + Seek), length: u64) -> Result<(), String> {
-    let mut head = [0; 104];
-    file.read_exact(&mut head).map_err(|_| format!("{length} bytes are too few for a LAS header"))?;
-    let u16_at = |at: usize| u64::from(u16::from_le_bytes([head[at], head[at + 1]]));
-    let u32_at = |at: usize| u64::from(u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
-    let (header_bytes, points_at, records) = (u16_at(94), u32_at(96), u32_at(100));
-    if header_bytes > points_at || points_at > length {
-        return Err(format!("points begin at byte {points_at} of {length}, after a header of {header_bytes}"));
-    }
-    if records.saturating_mul(RECORD_HEAD_BYTES) > points_at - header_bytes {
-        return Err(format!("{records} records cannot lie before the points, at byte {points_at}"));
-    }
-    Ok(())
-}
-
-fn check_count(header: &las::Header, length: u64) -> Result<(), String> {
-    let count = header.number_of_points();
-    let format = header.point_format();
-    let most = if format.is_compressed {
-        length.saturating_mul(MOST_POINTS_OF_A_BYTE).max(POINTS_OF_ANY_FILE)
-    } else {
-        length / u64::from(format.len().max(1))
-    };
-    if count > most {
-        return Err(format!("it says {count} points, of which at most {most} fit into the file's {length} bytes"));
-    }
-    let packed = header.laz_vlr().map(|record| record.items_size()).ok().filter(|_| format.is_compressed);
-    if packed.is_some_and(|bytes| bytes != u64::from(format.len())) {
-        return Err(format!("points of {} bytes, packed as others of {packed:?}", format.len()));
-    }
-    let transforms = header.transforms();
-    // Coordinates are whole numbers of 32 bits, scaled and shifted.
-    let farthest = |t: las::Transform| t.scale.abs() * f64::from(u32::MAX) + t.offset.abs();
-    if ![transforms.x, transforms.y, transforms.z].into_iter().map(farthest).all(f64::is_finite) {
-        return Err("a scale or an offset is not a finite number, or beyond all numbers".into());
-    }
-    Ok(())
 }
 
 /// Gathers points, without the noise.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::escape::escaped;
 use super::json_kind::JsonKind;
 use super::text::{LARGEST_TEXT_BYTES, read_text};
 use crate::geometry::{Matrix3, NotASimilarity, Similarity, StartError, Vector3};
@@ -14,7 +15,7 @@ pub enum PlacementError {
     #[error("cannot read the {what}: {source}: {}", path.display())]
     Io { what: &'static str, path: PathBuf, source: std::io::Error },
     /// `source` names line, column and key.
-    #[error("not a valid {what}: {source}; expected {expected} (NaN and infinity are no JSON): {}", path.display())]
+    #[error("not a valid {what}: {}; expected {expected} (NaN and infinity are no JSON): {}", escaped(&source.to_string()), path.display())]
     Json { what: &'static str, expected: &'static str, path: PathBuf, source: serde_json::Error },
     #[error(
         "the {what} is no similarity: {source}; expected x_city = scale * rotation * x_sfm + translation, \
@@ -23,7 +24,11 @@ pub enum PlacementError {
     )]
     NotASimilarity { what: &'static str, path: PathBuf, source: NotASimilarity },
     /// A matrix as text.
-    #[error("not a valid matrix: {found}; expected four rows of four numbers, s R and t in the first three, 0 0 0 1 in the last: {}", path.display())]
+    #[error(
+        "not a valid matrix: {}; expected four rows of four numbers, s R and t in the first three, 0 0 0 1 in the last: {}",
+        escaped(found),
+        path.display()
+    )]
     Matrix { path: PathBuf, found: String },
     #[error("not a valid start: {source}: {}", path.display())]
     Start { path: PathBuf, source: StartError },

@@ -182,6 +182,14 @@ mod tests {
     }
 
     #[test]
+    fn what_steers_a_terminal_is_written_out() {
+        for text in ["{\"scale\": 2, \"\u{9b}31m\": 3}", "1 0 0 0\n0 1 0 0\n0 0 1 \u{9b}31m\n0 0 0 1\n"] {
+            let message = read(text).unwrap_err();
+            assert!(message.contains("\\u{9b}31m") && !message.contains('\u{9b}'), "{message}");
+        }
+    }
+
+    #[test]
     fn names_a_key_that_is_missing() {
         let message = read(r#"{"scale": 2, "translation": [0,0,0]}"#).unwrap_err();
         assert!(message.contains("missing field `rotation`"), "{message}");

@@ -63,24 +63,23 @@ fn reconstruction(
             continue;
         };
         let r = record.rotation;
-        let turn = rotation(&[[r[0], r[1], r[2]], [r[3], r[4], r[5]], [r[6], r[7], r[8]]])
-            .filter(|_| record.translation.iter().all(|v| v.is_finite()))
-            .ok_or_else(|| ReconstructionError::Inconsistent {
-                path: path.into(),
-                object: format!("camera {number}"),
-                expected: "a rotation matrix and a finite translation".into(),
-                got: format!("{:?} and {:?}", record.rotation, record.translation),
-            })?;
+        let camera = posed.camera(camera);
         // Half a turn about x leads from y up, z back to y down, z ahead.
         let half_turn = Rotation3::from_matrix_unchecked(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
-        image_of_camera.push(Some(posed.images.len()));
-        let camera = posed.camera(camera);
-        posed.images.push(PosedImage {
+        let image = rotation(&[[r[0], r[1], r[2]], [r[3], r[4], r[5]], [r[6], r[7], r[8]]]).map(|turn| PosedImage {
             name,
             camera,
             cam_from_sfm_rotation: half_turn * turn,
             cam_from_sfm_translation: half_turn * Vector3::from(record.translation),
         });
+        let image = image.filter(PosedImage::is_placed).ok_or_else(|| ReconstructionError::Inconsistent {
+            path: path.into(),
+            object: format!("camera {number}"),
+            expected: "a rotation matrix and a finite translation".into(),
+            got: format!("{:?} and {:?}", record.rotation, record.translation),
+        })?;
+        image_of_camera.push(Some(posed.images.len()));
+        posed.images.push(image);
     }
     for point in &model.points {
         let track = point.views.iter().filter_map(|(camera, [x, y])| {

@@ -34,13 +34,11 @@ pub(super) fn reconstruction(path: &Path, model: &NerfstudioModel) -> Result<Rec
     let mut warnings = Vec::new();
     for frame in &model.frames {
         let object = || format!("frame {}", crate::format::escaped(&frame.file_path));
-        let (rotation, center) = camera_to_world(&frame.transform_matrix).ok_or_else(|| {
-            odd(
-                object(),
-                "a rotation and a finite place in its transform_matrix",
-                format!("{:?}", frame.transform_matrix),
-            )
-        })?;
+        let no_pose = || {
+            let expected = "a rotation and a finite place in its transform_matrix";
+            odd(object(), expected, format!("{:?}", frame.transform_matrix))
+        };
+        let (rotation, center) = camera_to_world(&frame.transform_matrix).ok_or_else(no_pose)?;
         let told = frame.own.or(&model.shared);
         let name = frame.file_path.strip_prefix("./").unwrap_or(&frame.file_path).to_owned();
         let camera = camera(&told, || picture_size(&folder.join(&name)));
@@ -53,7 +51,11 @@ pub(super) fn reconstruction(path: &Path, model: &NerfstudioModel) -> Result<Rec
         let half_turn = Rotation3::from_matrix_unchecked(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
         let cam_from_sfm_rotation = half_turn * rotation.inverse() * sfm_from_file.rotation.inverse();
         let cam_from_sfm_translation = -(cam_from_sfm_rotation * sfm_from_file.apply(&center.into()).coords);
-        posed.images.push(PosedImage { name, camera, cam_from_sfm_rotation, cam_from_sfm_translation });
+        let image = PosedImage { name, camera, cam_from_sfm_rotation, cam_from_sfm_translation };
+        if !image.is_placed() {
+            return Err(no_pose());
+        }
+        posed.images.push(image);
     }
     let cameras = posed.into_reconstruction(SfmFormat::Nerfstudio, warnings);
     let cloud = folder.join(model.ply_file_path.as_deref().unwrap_or(USUAL_CLOUD));
@@ -73,6 +75,14 @@ fn with_points(
     }
     let mut points = ply::reconstruction(cloud, read_ply(cloud)?)?;
     points.transform(sfm_from_file);
+    if let Some(number) = points.points.iter().position(|point| !point.iter().all(|v| v.is_finite())) {
+        return Err(ReconstructionError::Inconsistent {
+            path: cloud.into(),
+            object: format!("point {number}"),
+            expected: "a finite place after applied_transform and applied_scale are taken back".into(),
+            got: "one beyond all numbers".into(),
+        });
+    }
     cameras.point_ids = (1..=points.points.len() as u64).collect();
     cameras.warnings.append(&mut points.warnings);
     let Reconstruction { points, colors, normals, fields, .. } = points;

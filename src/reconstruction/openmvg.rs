@@ -36,17 +36,19 @@ pub(super) fn reconstruction(path: &Path, model: &OpenMvgModel) -> Result<Recons
                 continue;
             }
         };
-        let rotation = rotation(&pose.rotation).filter(|_| pose.center.iter().all(|v| v.is_finite()));
-        let rotation = rotation.ok_or_else(|| ReconstructionError::Inconsistent {
+        let camera = posed.camera(camera);
+        let image = rotation(&pose.rotation).map(|rotation| {
+            let cam_from_sfm_translation = -(rotation * Vector3::from(pose.center));
+            PosedImage { name, camera, cam_from_sfm_rotation: rotation, cam_from_sfm_translation }
+        });
+        let image = image.filter(PosedImage::is_placed).ok_or_else(|| ReconstructionError::Inconsistent {
             path: path.into(),
             object: format!("pose {}", data.id_pose),
             expected: "a rotation matrix and a finite centre".into(),
             got: format!("{:?} at {:?}", pose.rotation, pose.center),
         })?;
         image_of_view.insert(view.key, posed.images.len());
-        let camera = posed.camera(camera);
-        let cam_from_sfm_translation = -(rotation * Vector3::from(pose.center));
-        posed.images.push(PosedImage { name, camera, cam_from_sfm_rotation: rotation, cam_from_sfm_translation });
+        posed.images.push(image);
     }
     posed.points = points(model, &image_of_view, &mut warnings);
     Ok(posed.into_reconstruction(SfmFormat::OpenMvg, warnings))

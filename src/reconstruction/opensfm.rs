@@ -49,18 +49,19 @@ fn reconstruction(piece: &OpenSfmPiece, observations: &[OpenSfmObservation]) -> 
                 continue;
             }
         };
-        if !shot.rotation.iter().chain(&shot.translation).all(|v| v.is_finite()) {
+        let image = PosedImage {
+            name: name.clone(),
+            camera,
+            cam_from_sfm_rotation: Rotation3::new(Vector3::from(shot.rotation)),
+            cam_from_sfm_translation: shot.translation.into(),
+        };
+        if !image.is_placed() {
             warn(&mut warnings, WarningKind::ImagesWithoutPose, || name.clone());
             continue;
         }
         image_of_shot.insert(name.as_str(), posed.images.len());
         positions.push(shot.gps_position.filter(|place| place.iter().all(|v| v.is_finite())));
-        posed.images.push(PosedImage {
-            name: name.clone(),
-            camera,
-            cam_from_sfm_rotation: Rotation3::new(Vector3::from(shot.rotation)),
-            cam_from_sfm_translation: shot.translation.into(),
-        });
+        posed.images.push(image);
     }
     let mut index_of_track = HashMap::new();
     for (id, point) in &piece.points {

@@ -22,6 +22,14 @@ pub(super) struct PosedImage {
     pub cam_from_sfm_translation: Vector3<f64>,
 }
 
+impl PosedImage {
+    /// Whether it stands anywhere: numbers of a file that are finite need not be so when they were multiplied.
+    pub fn is_placed(&self) -> bool {
+        let (rotation, translation) = (self.cam_from_sfm_rotation.matrix(), self.cam_from_sfm_translation);
+        rotation.iter().chain(translation.iter()).all(|v| v.is_finite())
+    }
+}
+
 pub(super) struct PosedPoint {
     pub position: [f64; 3],
     pub color: [u8; 3],
@@ -135,6 +143,47 @@ pub(super) fn warn(warnings: &mut Vec<ReconstructionWarning>, kind: WarningKind,
 mod tests {
     use super::*;
     use crate::geometry::CameraModel;
+
+    /// What reading a file of this name and content ends with.
+    fn read(name: &str, content: &str) -> Result<Reconstruction, String> {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(name), content).unwrap();
+        std::fs::write(folder.path().join("p.ply"), PLY).unwrap();
+        crate::reconstruction::read_reconstruction(&folder.path().join(name)).map_err(|error| error.to_string())
+    }
+
+    const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\n\
+                       end_header\n1e308 2 3\n";
+
+    #[test]
+    fn numbers_that_are_finite_until_they_are_multiplied_are_no_pose() {
+        let opensfm = |turn: &str| {
+            format!(
+                r#"[{{"cameras": {{"c": {{"projection_type": "perspective", "width": 4, "height": 3, "focal": 1}}}},
+                "shots": {{"a.jpg": {{"rotation": [{turn}, {turn}, 0], "translation": [0, 0, 0], "camera": "c"}}}},
+                "points": {{"1": {{"coordinates": [0, 0, 9], "color": [1, 2, 3]}}}}}}]"#
+            )
+        };
+        assert_eq!(read("r.json", &opensfm("0.1")).unwrap().images.len(), 1);
+        let r = read("r.json", &opensfm("1e300")).unwrap();
+        assert!(r.images.is_empty() && r.warnings[0].kind == WarningKind::ImagesWithoutPose, "{:?}", r.warnings);
+        let nerfstudio = |place: &str, scale: &str, ply: &str| {
+            format!(
+                r#"{{"w": 4, "h": 3, "fl_x": 4, "applied_scale": {scale}, {ply} "frames": [{{"file_path": "a.jpg",
+                "transform_matrix": [[0.6, 0.8, 0, {place}], [-0.8, 0.6, 0, {place}], [0, 0, 1, 0], [0, 0, 0, 1]]}}]}}"#
+            )
+        };
+        assert!(read("t.json", &nerfstudio("7", "1", "")).is_ok());
+        let message = read("t.json", &nerfstudio("1.7e308", "1", "")).unwrap_err();
+        assert!(message.contains("frame a.jpg: expected a rotation and a finite place"), "{message}");
+        let message = read("t.json", &nerfstudio("7", "1e-9", r#""ply_file_path": "p.ply","#)).unwrap_err();
+        assert!(message.contains("p.ply, point 0: expected a finite place"), "{message}");
+        let bundler = |place: &str| {
+            format!("# Bundle file v0.3\n1 1\n500 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 {place}\n0 0 -3\n1 2 3\n1 0 0 4 4\n")
+        };
+        assert!(read("b.out", &bundler("1")).is_ok());
+        assert!(read("b.out", &bundler("1e999")).is_err());
+    }
 
     fn image(name: &str) -> PosedImage {
         let (cam_from_sfm_rotation, cam_from_sfm_translation) = (Rotation3::identity(), Vector3::zeros());

@@ -1,5 +1,7 @@
 //! What was odd in a reconstruction, and tolerated.
 
+use crate::format::escaped;
+
 /// Something odd that real files hold, tolerated; `count` cases, the first of them named.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReconstructionWarning {
@@ -126,6 +128,7 @@ impl WarningKind {
 impl std::fmt::Display for ReconstructionWarning {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let ReconstructionWarning { kind, count, example } = self;
+        let example = escaped(example);
         match kind {
             WarningKind::UnitNotMetres | WarningKind::HeightsBrought => write!(f, "{example}"),
             WarningKind::LooseFit | WarningKind::SightDenied => write!(f, "{count} {}: {example}", kind.text()),
@@ -135,5 +138,17 @@ impl std::fmt::Display for ReconstructionWarning {
             }
             _ => write!(f, "{count} {} (such as {example})", kind.text()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_file_calls_its_pictures_does_not_steer_the_terminal() {
+        let example = "\x1b[2J\u{202e}gpj.a".to_owned();
+        let warning = ReconstructionWarning { kind: WarningKind::SizesGuessed, count: 2, example };
+        assert!(warning.to_string().ends_with("(such as \\u{1b}[2J\\u{202e}gpj.a)"), "{warning}");
     }
 }

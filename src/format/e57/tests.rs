@@ -1,4 +1,6 @@
-use e57::{E57Writer, Quaternion, Record, RecordDataType, RecordName, RecordValue, Transform, Translation};
+use e57::{
+    E57Writer, IntensityLimits, Quaternion, Record, RecordDataType, RecordName, RecordValue, Transform, Translation,
+};
 
 use super::*;
 
@@ -69,12 +71,31 @@ fn points_that_are_no_numbers_are_left_out_and_counted() {
 }
 
 #[test]
-fn more_points_than_bits_are_refused() {
+fn more_points_than_bytes_are_refused() {
     let scan = PointCloud::default();
     assert!(check_count(&scan, 0).is_ok());
     let mut lying = PointCloud::default();
-    lying.records = 8 * 1024 + 1;
-    assert!(check_count(&lying, 1024).unwrap_err().contains("8193 points"));
+    lying.records = 1025;
+    assert!(check_count(&lying, 1024).unwrap_err().contains("1025 points"));
+}
+
+#[test]
+fn limits_that_are_no_numbers_are_an_error() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let mut writer = E57Writer::from_file(file.path(), "file").unwrap();
+    let mut prototype = vec![Record::CARTESIAN_X_F64, Record::CARTESIAN_Y_F64, Record::CARTESIAN_Z_F64];
+    let data_type = RecordDataType::Single { min: None, max: None };
+    prototype.push(Record { name: RecordName::Intensity, data_type });
+    let mut scan = writer.add_pointcloud("scan", prototype).unwrap();
+    let [intensity_min, intensity_max] = [0.0, f32::NAN].map(|limit| Some(RecordValue::Single(limit)));
+    scan.set_intensity_limits(Some(IntensityLimits { intensity_min, intensity_max }));
+    let mut values: Vec<RecordValue> = [1.0, 2.0, 3.0].map(RecordValue::Double).to_vec();
+    values.push(RecordValue::Single(0.5));
+    scan.add_point(values).unwrap();
+    scan.finalize().unwrap();
+    writer.finalize().unwrap();
+    let message = read_e57(file.path()).unwrap_err().to_string();
+    assert!(message.contains("contradicts itself"), "{message}");
 }
 
 #[test]

@@ -112,6 +112,57 @@ fn headers_that_lie_are_refused_before_memory_is_taken() {
     }
 }
 
+const HEADER_BYTES_AT: usize = 94;
+/// Where the header of version 1.4 says where records behind the points begin; the number of those follows.
+const RECORDS_BEHIND_AT: usize = 235;
+
+#[test]
+fn records_behind_the_points_that_lie_about_their_length_are_refused() {
+    let mut bytes = std::fs::read(file(7, false, &[point(1.0, Classification::Ground)]).path()).unwrap();
+    let end = bytes.len() as u64;
+    let mut record = [0; 60 + 5];
+    record[20..28].copy_from_slice(&5u64.to_le_bytes());
+    bytes.extend(record);
+    bytes[RECORDS_BEHIND_AT..RECORDS_BEHIND_AT + 8].copy_from_slice(&end.to_le_bytes());
+    let with = |count: u32| changed(&bytes, RECORDS_BEHIND_AT + 8, &count.to_le_bytes());
+    assert_eq!(read_las(with(1).path()).unwrap().positions.len(), 1);
+    let message = read_las(with(2).path()).unwrap_err().to_string();
+    assert!(message.contains("record 2 of 2 behind the points"), "{message}");
+    for length in [6, 1 << 37, u64::MAX] {
+        bytes[end as usize + 20..end as usize + 28].copy_from_slice(&u64::to_le_bytes(length));
+        bytes[RECORDS_BEHIND_AT + 8] = 1;
+        // The second says that its header is one of 1.2.
+        for header_bytes in [375u16, 227] {
+            let lying = changed(&bytes, HEADER_BYTES_AT, &header_bytes.to_le_bytes());
+            let message = read_las(lying.path()).unwrap_err().to_string();
+            assert!(message.contains("record 1 of 1 behind the points") && message.contains("beyond"), "{message}");
+        }
+    }
+}
+
+#[test]
+fn packed_points_that_lie_about_their_chunks_are_refused_before_memory_is_taken() {
+    for format in [3, 7] {
+        let bytes = std::fs::read(file(format, true, &[point(1.0, Classification::Ground)]).path()).unwrap();
+        let u32_at = |at: usize| u32::from_le_bytes(*bytes[at..].first_chunk().unwrap()) as usize;
+        let points_at = u32_at(POINTS_AT);
+        let count_at = u32_at(points_at) + 4;
+        assert_eq!(u32_at(count_at), 1);
+        let message = read_las(changed(&bytes, count_at, &u32::MAX.to_le_bytes()).path()).unwrap_err().to_string();
+        assert!(message.contains("chunks of packed points, of which at most"), "{message}");
+        if format == 7 {
+            // Behind the offset of the table and the first point, with its colour, and the number of points.
+            let first_layer = points_at + 8 + 36 + 4;
+            let lying = changed(&bytes, first_layer, &0xF000_0000u32.to_le_bytes());
+            let message = read_las(lying.path()).unwrap_err().to_string();
+            assert!(message.contains("chunk 1 of 1, at byte") && message.contains("beyond the file's"), "{message}");
+            // The table lies beyond the file; the crate would begin to unpack there.
+            let message = read_las(changed(&bytes, points_at, &[0xFF; 4]).path()).unwrap_err().to_string();
+            assert!(message.contains("the table of the packed chunks cannot be read"), "{message}");
+        }
+    }
+}
+
 #[test]
 fn cut_and_changed_files_never_panic() {
     for (format, is_compressed) in [(3, false), (3, true), (7, true)] {

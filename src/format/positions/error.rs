@@ -13,8 +13,8 @@ pub enum PositionsError {
     Line { path: PathBuf, line: usize, found: String, expected: &'static str },
     #[error("{}; expected {expected}: {}", escaped(found), path.display())]
     Content { path: PathBuf, found: String, expected: &'static str },
-    #[error("the database cannot be read: {source}; expected database.db of COLMAP: {}", path.display())]
+    #[error("the database cannot be read: {}; expected database.db of COLMAP: {}", escaped(&source.to_string()), path.display())]
     Database { path: PathBuf, source: rusqlite::Error },
-    #[error("not a valid OpenSfM reconstruction: {source}: {}", path.display())]
+    #[error("not a valid OpenSfM reconstruction: {}: {}", escaped(&source.to_string()), path.display())]
     Json { path: PathBuf, source: serde_json::Error },
 }

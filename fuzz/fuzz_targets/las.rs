@@ -1,0 +1,3 @@
+#![no_main]
+
+cityweld_fuzz::fuzz_format!("las");

@@ -66,7 +66,8 @@ numbers! {
         reach_sigmas, prior_cost, least_tilt_rad, model_unit_m, noise_sigmas, plane_sigma_m, least_point_sigma_m,
         same_normal_deg, grazing_deg, upright_sin, tells_floors_rad;
         whole: ;
-        not: facet_visibility, patches, up, search, refinement, line_search, occlusion, null_poses, evidence, uncertainty, verdict
+        not: facet_visibility, patches, up, search, refinement, line_search, occlusion, null_poses, evidence, uncertainty, verdict,
+            place_search
     }
     verdict: verdict as VerdictLimits {
         false_alarm, same_m, default_accuracy_m, default_accuracy_share, scale_sigmas, scale_m;

@@ -87,8 +87,8 @@ numbers! {
         known_sigma_rad, distinct_sigmas, comparable_share, cost_of_leaving, votes_of_kernel, steepest_view, upside_down,
         quarter_turned;
         whole: most_known;
-        // Habits of voters, each three numbers measured together.
-        not: patches, cameras
+        // Habits of voters, each three numbers measured together; what is asked without a start, which these tasks have.
+        not: patches, cameras, cameras_sigma_rad, axis_share
     }
     search: search as SearchLimits {
         gate_units, same_place_m, smallest_target_m2, same_angle_rad, same_cos, row_sigma_m, row_sigma_per_m, informative_sigma_m,

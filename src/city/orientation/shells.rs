@@ -1,5 +1,7 @@
 //! Facets of one object that hang together, and which way each such shell looks.
 
+use std::collections::HashMap;
+
 use rayon::prelude::*;
 
 use super::signed_links::{EdgeRuns, Links};
@@ -93,6 +95,21 @@ impl<'a> Object<'a> {
         Object { model, facets, precision_m: source.precision_m, agrees, shells }
     }
 
+    /// For each shell the first that is the same: facets that stand three times and more in one place are shells of one facet each, of which
+    /// rays from any tell the same. A mesh shown a thousand times in one place would otherwise be asked a thousand times, through
+    /// a thousand triangles.
+    fn first_of_its_copies(&self) -> Vec<usize> {
+        let mut first_with = HashMap::new();
+        let first = |(at, shell): (usize, &Shell)| match shell.members[..] {
+            [only] => {
+                let Facet { outline, holes, .. } = self.facet(only);
+                *first_with.entry((outline, holes)).or_insert(at)
+            }
+            _ => at,
+        };
+        self.shells.iter().enumerate().map(first).collect()
+    }
+
     fn facet(&self, member: usize) -> &'a Facet {
         &self.model.facets[self.facets[member] as usize]
     }
@@ -103,13 +120,16 @@ impl<'a> Object<'a> {
         if sides.contains(&Side::Untold) || disagree(&sides) {
             let sky = self.sky();
             let closed = sides.clone();
-            let judged = self.shells.par_iter().zip(&closed).map(|(shell, &side)| match side {
+            let asked = self.first_of_its_copies();
+            let judged = self.shells.par_iter().zip(&closed).enumerate().map(|(at, (shell, &side))| match side {
+                _ if asked[at] != at => Side::Untold,
                 Side::Untold => self.side_in_the_open(shell, &sky),
                 _ => self
                     .outermost_around(shell, &closed, &sky)
                     .map_or(side, |outer| self.as_turned_with(shell, outer, &closed)),
             });
-            sides = judged.collect();
+            let judged: Vec<Side> = judged.collect();
+            sides = asked.into_iter().map(|first| judged[first]).collect();
         }
         let mut inward = vec![false; self.facets.len()];
         let (mut told_m2, mut turned_m2) = (0.0, 0.0);
@@ -209,4 +229,43 @@ impl<'a> Object<'a> {
 
 pub(super) fn area(model: &CityModel, facets: &[u32]) -> f64 {
     facets.iter().map(|&facet| model.facets[facet as usize].area).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box without its floor, wound inwards or not, so many times in the same place.
+    fn copies(count: usize, is_inward: bool) -> CityModel {
+        let corners = "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nv 0 0 4\nv 2 0 4\nv 2 3 4\nv 0 3 4\no box\n";
+        let facets = ["5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"].map(|facet| {
+            let mut corners: Vec<&str> = facet.split(' ').collect();
+            if is_inward {
+                corners.reverse();
+            }
+            format!("f {}\n", corners.join(" "))
+        });
+        crate::city::tests::model(&format!("{corners}{}", facets.concat().repeat(count)))
+    }
+
+    #[test]
+    fn facets_in_one_place_are_asked_once_however_many_there_are() {
+        for count in [1, 3, 200] {
+            let model = copies(count, false);
+            let facets: Vec<u32> = (0..model.facets.len() as u32).collect();
+            let object = Object::new(&model, &facets, &model.sources[0]);
+            let first = object.first_of_its_copies();
+            let asked = first.iter().enumerate().filter(|(at, first)| at == *first).count();
+            assert_eq!((facets.len(), asked), (5 * count, if count == 1 { 1 } else { 5 }));
+        }
+    }
+
+    #[test]
+    fn copies_are_turned_as_the_first_of_them() {
+        let up = |model: &CityModel| model.facets.iter().filter(|facet| facet.plane.normal.z > 0.9).count();
+        for count in [1, 3, 20] {
+            let [inward, outward] = [true, false].map(|is_inward| copies(count, is_inward));
+            assert_eq!((up(&inward), up(&outward)), (count, count));
+        }
+    }
 }

@@ -178,7 +178,9 @@ pub struct AlignArgs {
     cityweld merge part_a part_b -o out\n  \
     cityweld merge colmap/sparse -o out\n  \
     cityweld merge part_a part_b part_c --photos photos/ -o out\n  \
-        cityweld merge part_a part_b --city city.obj --start a.json --start b.json -o out\n\n\
+    cityweld merge part_a part_b --city city.obj -o out\n  \
+    cityweld merge part_a part_b --city city.gml --crs EPSG:25832 --positions geo.txt -o out\n  \
+    cityweld merge part_a part_b --city city.obj --start a.json --start b.json -o out\n\n\
     Exit status: 0 all parts are merged; 1 any other verdict (merge.json says why).")]
 pub struct MergeArgs {
     /// Partial reconstructions (COLMAP folders, clouds, what other tools wrote): two or more, or one folder that holds them
@@ -197,12 +199,16 @@ pub struct MergeArgs {
     /// superpixels; or those planes alone, to study them
     #[arg(long, value_name = "WHICH", value_enum, default_value_t = EvidenceArg::All)]
     pub evidence: EvidenceArg,
-    /// City model in which the parts meet (as CITY of `align`); needs one --start for every part
+    /// City model in which the parts meet (as CITY of `align`); without --start and --positions each part is searched in the whole of it
     #[arg(long, value_name = "CITY")]
     pub city: Option<PathBuf>,
     /// Coarse place of a part in the city, JSON (see `align --help`), or its alignment.json; once for every part, in their order
     #[arg(long, value_name = "FILE")]
     pub start: Vec<PathBuf>,
+    /// Where the photographs of all parts were taken (as --positions of `align`), matched by name; a part with none of them is searched in
+    /// the whole city [default: --photos, where no --start is given]
+    #[arg(long, value_name = "SOURCE")]
+    pub positions: Option<PathBuf>,
     /// Probability of a wrong place called right that may be taken, of a part in the city as well as between parts; above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,

@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
-use super::args::{AlignArgs, Near};
+use super::args::{AlignArgs, MergeArgs, Near};
 use super::plan::file_name;
+use crate::Place;
 use crate::city::CityModel;
 use crate::format::control::{ControlFile, read_control_points};
 use crate::format::positions::{Frame, PositionsFile, read_positions};
 use crate::format::read_start;
 use crate::geometry::Start;
-use crate::georeference::{Estimate, agreed, from_control_points, from_geographic, from_positions};
+use crate::georeference::{Estimate, GeoreferenceError, agreed, from_control_points, from_geographic, from_positions};
 use crate::place_search::{Disc, PlacePrior};
 use crate::reconstruction::Reconstruction;
 
@@ -78,6 +79,47 @@ impl PlaceSources {
             estimates.push(from_control_points(read, name, sfm, city, frame)?);
         }
         Ok(agreed(estimates)?)
+    }
+}
+
+/// Where the parts of a merge stand in the city: a start for each, positions of the photographs of all.
+pub struct PartPlaces<'a> {
+    starts: Vec<Named<Start>>,
+    positions: Option<Named<PositionsFile>>,
+    city: &'a CityModel,
+}
+
+impl PartPlaces<'_> {
+    pub fn read<'a>(args: &MergeArgs, city: &'a CityModel) -> Result<PartPlaces<'a>> {
+        let starts = args.start.iter().map(|path| anyhow::Ok(Named::new(path, read_start(path)?)));
+        let named_positions = |path: &PathBuf| anyhow::Ok(Named::new(path, read_positions(path)?));
+        let mut positions = args.positions.as_ref().map(named_positions).transpose()?;
+        if args.start.is_empty() && positions.is_none() {
+            // Photographs without GPS say nothing, and are no error.
+            positions = args.photos.as_ref().and_then(|photos| named_positions(photos).ok());
+        }
+        Ok(PartPlaces { starts: starts.collect::<Result<_>>()?, positions, city })
+    }
+
+    /// What is known of a part's place, and what is to be said of it. A part of whose photographs no position is known is searched in the whole
+    /// city, unless it has a start.
+    pub fn of_part(&self, part: usize, sfm: &Reconstruction) -> Result<(Place, Vec<String>)> {
+        let frame = frame_of(self.city);
+        let (mut estimates, mut told) = (Vec::new(), Vec::new());
+        if let Some(Named { name, read }) = self.starts.get(part) {
+            estimates.push(Estimate::given(*read, &sfm.points, format!("start ({name})")));
+        }
+        if let Some(Named { name, read }) = &self.positions {
+            match from_positions(read, name, sfm, self.city, frame.as_ref()) {
+                Err(none @ (GeoreferenceError::NoCameras { .. } | GeoreferenceError::TooFewMatches { .. })) => {
+                    told.push(none.to_string());
+                }
+                estimate => estimates.push(estimate?),
+            }
+        }
+        let Some(estimate) = agreed(estimates)? else { return Ok((Place::default(), told)) };
+        told.extend(estimate.warnings);
+        Ok((Place::Start(estimate.start), told))
     }
 }
 

@@ -23,7 +23,6 @@ mod origin;
 mod polygons;
 mod read;
 mod recognise;
-mod signed_links;
 mod source;
 mod subset;
 #[cfg(test)]

@@ -1,11 +1,13 @@
 //! `cityweld align`
 
+use crate::Place;
 use crate::city::read_city;
 use crate::export::{
     CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, start_report, write_alignment,
 };
 use crate::georeference::Estimate;
 use crate::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
+use crate::place_search::PlacePrior;
 use crate::planes::PreparedCity;
 use crate::reconstruction::{Reconstruction, read_reconstruction};
 use crate::verdict::Verdict;
@@ -29,7 +31,7 @@ pub fn carry_out(plan: &AlignPlan, output: Option<Output>, session: &Session) ->
     let Some((output, place)) = output.zip(plan.output.as_ref()) else {
         return tell_start(&inputs, plan, session);
     };
-    let options = plan.options(inputs.start.as_ref().map(|known| known.estimate.start));
+    let options = plan.options(inputs.place());
     let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &options, &voice.bar)?;
     voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
     alignment.warnings.splice(0..0, inputs.warnings(plan));
@@ -56,6 +58,7 @@ struct Inputs {
     superpixels: Option<LiftedSuperpixels>,
     /// Without one the city is searched.
     start: Option<KnownStart>,
+    prior: PlacePrior,
 }
 
 struct KnownStart {
@@ -83,6 +86,7 @@ impl Inputs {
         voice.bar.show("reading the city", 0, 0);
         let city = read_city(&plan.city.city, &plan.city.terrain, &plan.city.options)?;
         voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));
+        let prior = plan.place.prior(&city)?;
         voice.bar.show("reading the reconstruction", 0, 0);
         let sfm = read_reconstruction(&plan.sfm)?;
         voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
@@ -109,7 +113,11 @@ impl Inputs {
                 Some(lifted)
             }
         };
-        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, start })
+        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, start, prior })
+    }
+
+    fn place(&self) -> Place {
+        self.start.as_ref().map_or(Place::Anywhere(self.prior), |known| Place::Start(known.estimate.start))
     }
 
     /// What was tolerated while reading, once each.

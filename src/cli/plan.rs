@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::city::CityOptions;
-use crate::geometry::{Start, Vector3};
+use crate::geometry::Vector3;
 use crate::imagery::SuperpixelSource;
 use crate::{AlignOptions, Place, Up};
 use anyhow::{Context, Result, ensure};
@@ -72,9 +72,8 @@ impl AlignPlan {
         })
     }
 
-    /// Everything that `align` takes, from a start on where there is one.
-    pub fn options(&self, start: Option<Start>) -> AlignOptions {
-        let place = start.map_or_else(|| Place::Anywhere(self.place.prior()), Place::Start);
+    /// Everything that `align` takes, from that place on.
+    pub fn options(&self, place: Place) -> AlignOptions {
         let Settings { fixed_scale, up, accuracy_m, seed, false_alarm } = self.settings;
         let options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::at(place) };
         options.with_false_alarm(false_alarm)

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use super::{Crs, Lod, SurfaceKind};
 use crate::format::surfaces::{ObjectRecord, SurfaceFile};
 
 /// What a city file holds, before levels of detail are chosen.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct CityContents {
     /// What the file is, with its version ("CityJSON 2.0").
     pub format: String,
@@ -14,6 +16,7 @@ pub struct CityContents {
     pub objects: usize,
     /// Objects that are parts of others.
     pub parts: usize,
+    #[serde(serialize_with = "as_pairs", deserialize_with = "from_pairs")]
     pub polygons: BTreeMap<Option<Lod>, KindCounts>,
     /// Polygons with holes.
     pub holes: usize,
@@ -21,8 +24,17 @@ pub struct CityContents {
     pub crs: Option<Crs>,
 }
 
+/// A map whose keys are no texts, as JSON can hold it.
+fn as_pairs<S: Serializer>(map: &BTreeMap<Option<Lod>, KindCounts>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(map)
+}
+
+fn from_pairs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<Option<Lod>, KindCounts>, D::Error> {
+    Ok(Vec::deserialize(deserializer)?.into_iter().collect())
+}
+
 /// Polygons by what they are of their object.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct KindCounts {
     pub ground: usize,
     pub roof: usize,

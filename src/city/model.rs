@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use super::warning::CityWarning;
 use super::{CityContents, Crs};
 use crate::format::surfaces::SurfaceKind;
@@ -34,6 +36,24 @@ pub struct CityModel {
     pub crs: Option<Crs>,
     /// What the files had wrong and was tolerated, one entry a kind.
     pub warnings: Vec<CityWarning>,
+    /// Of each triangle whether somebody could have seen it, where an index of the city knows; else empty.
+    pub exposed: Vec<bool>,
+    /// What the whole city has, where this is a part that was read out of an index.
+    pub part_of: Option<CitySize>,
+}
+
+/// How much a model has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct CitySize {
+    pub objects: usize,
+    pub facets: usize,
+    pub triangles: usize,
+}
+
+impl CitySize {
+    pub fn of(model: &CityModel) -> CitySize {
+        CitySize { objects: model.objects.len(), facets: model.facets.len(), triangles: model.triangles.len() }
+    }
 }
 
 /// One polygon of the model, or one triangle where the file has only triangles.
@@ -70,7 +90,7 @@ pub struct CitySource {
 }
 
 /// What a file is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum CityRole {
     City,
     /// A surface that is open by its nature.

@@ -1,0 +1,20 @@
+//! A city prepared once: written as an index of blocks, read again as a model of all of it or of any part.
+//!
+//! `draft.rs` makes the blocks of a model (`plan.rs` says which facet goes where, `pack.rs` turns a block into records) and `open.rs` reads them;
+//! `assemble.rs` puts any of them together to the model that the files gave, facet by facet. `words.rs` is what is said of the whole,
+//! `stamp.rs` tells whether the files are still those that were read.
+
+mod assemble;
+mod draft;
+mod open;
+mod pack;
+mod plan;
+mod stamp;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use draft::{IndexDraft, Surroundings};
+pub use open::{CityIndex, IndexOverview};
+pub use stamp::CityChange;

@@ -1,0 +1,86 @@
+//! What an index says of the city as a whole; JSON in its directory.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::stamp::{FileStamp, FolderStamp};
+use crate::city::{CityContents, CityModel, CityRole, CitySize, CitySource, CityWarning, Crs};
+
+/// What an index says of the city as a whole.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(super) struct Words {
+    /// Who wrote it.
+    pub program: String,
+    pub origin: [f64; 3],
+    pub crs: Option<Crs>,
+    pub size: CitySize,
+    pub vertices: VertexNumbers,
+    pub sources: Vec<SourceWords>,
+    pub warnings: Vec<CityWarning>,
+    pub files: Vec<FileStamp>,
+    pub folders: Vec<FolderStamp>,
+}
+
+/// What the order of a vertex tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub(super) enum VertexNumbers {
+    /// Vertices of two blocks are one if they have the same order.
+    OfCity,
+    /// ... if they are at the same place; then the lower order counts.
+    ByPlace,
+}
+
+/// What one file gave to the model.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(super) struct SourceWords {
+    pub path: String,
+    pub role: CityRole,
+    /// Orders of its facets and objects: from, to.
+    pub facets: [u32; 2],
+    pub objects: [u32; 2],
+    pub precision_m: f64,
+    pub contents: CityContents,
+}
+
+impl SourceWords {
+    fn of(source: &CitySource) -> SourceWords {
+        SourceWords {
+            path: source.path.to_string_lossy().into_owned(),
+            role: source.role,
+            facets: [source.facets.start, source.facets.end],
+            objects: [source.objects.start, source.objects.end],
+            precision_m: source.precision_m,
+            contents: source.contents.clone(),
+        }
+    }
+
+    /// With the facets and objects that are there of it.
+    pub fn source(&self, facets: std::ops::Range<u32>, objects: std::ops::Range<u32>) -> CitySource {
+        CitySource {
+            path: Path::new(&self.path).to_owned(),
+            role: self.role,
+            facets,
+            objects,
+            precision_m: self.precision_m,
+            contents: self.contents.clone(),
+        }
+    }
+}
+
+impl Words {
+    /// Of a model whose facets, objects and vertices are numbered as they are in the index.
+    pub fn of(model: &CityModel, files: Vec<FileStamp>, folders: Vec<FolderStamp>) -> Words {
+        Words {
+            program: concat!("cityweld ", env!("CARGO_PKG_VERSION")).to_owned(),
+            origin: model.origin.into(),
+            crs: model.crs.clone(),
+            size: CitySize::of(model),
+            vertices: VertexNumbers::OfCity,
+            sources: model.sources.iter().map(SourceWords::of).collect(),
+            warnings: model.warnings.clone(),
+            files,
+            folders,
+        }
+    }
+}

@@ -71,12 +71,7 @@ fn together(boxes: &[PlanBox], side_m: f64) -> Vec<Vec<usize>> {
 }
 
 /// What can be seen of each block.
-fn sights(
-    surroundings: Surroundings,
-    asked: &[usize],
-    block_m: f64,
-    limits: &Limits,
-) -> Vec<(usize, BlockSight)> {
+fn sights(surroundings: Surroundings, asked: &[usize], block_m: f64, limits: &Limits) -> Vec<(usize, BlockSight)> {
     let Surroundings { city: assembled, blocks } = surroundings;
     let owners = Owners::new(&assembled.object_of, assembled.model.objects.len());
     let city = PreparedCity::with_limits(assembled.model, &limits.facet_visibility);

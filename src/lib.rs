@@ -71,11 +71,11 @@ pub use observer::{Cancelled, Observer, Stage};
 pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
 // City, reconstruction, start.
-pub use city_index::write_city_index;
 pub use city::{
     CityIndex, CityLod, CityModel, CityOptions, CityUnit, CityUp, Facet, PlanBox, read_city, read_city_contents,
     read_city_files, read_city_within,
 };
+pub use city_index::write_city_index;
 pub use format::control::read_control_points;
 pub use format::positions::read_positions;
 pub use format::read_start;
@@ -103,8 +103,8 @@ pub use geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 /// What the models and results are made of, and the errors of single functions.
 pub mod types {
     pub use crate::city::{
-        CityChange, CityContents, CityDefect, CityError, CityPlace, CityRole, CitySize, CitySource, CityWarning, Crs, FacetId, KindCounts,
-        Lod, IndexOverview, ObjectId, SurfaceKind,
+        CityChange, CityContents, CityDefect, CityError, CityPlace, CityRole, CitySize, CitySource, CityWarning, Crs,
+        FacetId, IndexOverview, KindCounts, Lod, ObjectId, SurfaceKind,
     };
     pub use crate::city_index::CityIndexError;
     pub use crate::export::{ExportError, OutputError, ReportError};

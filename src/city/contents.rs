@@ -56,6 +56,14 @@ impl KindCounts {
         [("ground", ground), ("roof", roof), ("wall", wall), ("other", other), ("unsaid", unsaid)].into_iter()
     }
 
+    fn add_all(&mut self, other: &KindCounts) {
+        self.ground += other.ground;
+        self.roof += other.roof;
+        self.wall += other.wall;
+        self.other += other.other;
+        self.unsaid += other.unsaid;
+    }
+
     fn add(&mut self, kind: Option<SurfaceKind>) {
         *match kind {
             Some(SurfaceKind::Ground) => &mut self.ground,
@@ -83,6 +91,16 @@ impl CityContents {
             contents.holes += usize::from(surface.ring_count > 1);
         }
         contents
+    }
+
+    /// Takes in what a further part of the same file holds.
+    pub(super) fn add(&mut self, other: &CityContents) {
+        self.objects += other.objects;
+        self.parts += other.parts;
+        self.holes += other.holes;
+        for (lod, counts) in &other.polygons {
+            self.polygons.entry(*lod).or_default().add_all(counts);
+        }
     }
 
     /// Of a format without levels and kinds.

@@ -71,7 +71,7 @@ impl Source {
 }
 
 /// The building that a part of a part belongs to.
-fn root_of(objects: &[ObjectRecord], object: usize) -> usize {
+pub(super) fn root_of(objects: &[ObjectRecord], object: usize) -> usize {
     let mut root = object;
     while let Some(parent) = objects[root].parent {
         root = parent as usize;

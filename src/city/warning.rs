@@ -158,6 +158,13 @@ impl Warnings {
         }
     }
 
+    /// Takes in warnings that were counted elsewhere.
+    pub fn add_all(&mut self, warnings: impl IntoIterator<Item = CityWarning>) {
+        for CityWarning { defect, count, example } in warnings {
+            self.add(defect, count, || example);
+        }
+    }
+
     pub fn into_list(self) -> Vec<CityWarning> {
         self.0
     }

@@ -108,7 +108,9 @@ impl CityWarning {
             CityDefect::PassedOver { .. } | CityDefect::NoCityFile | CityDefect::EmptyTile => {
                 write!(f, ", passed over")?
             }
-            CityDefect::IndexAlone => write!(f, "; the index is taken, though nothing tells whether they have changed")?,
+            CityDefect::IndexAlone => {
+                write!(f, "; the index is taken, though nothing tells whether they have changed")?
+            }
             CityDefect::SameObject => write!(f, " of the city (tiles that overlap?), both kept")?,
             CityDefect::Footprints => write!(f, " that has nothing above level of detail 0, left out")?,
             CityDefect::AboveWantedLevel => write!(f, " wants, and its object has no lower one, left out")?,

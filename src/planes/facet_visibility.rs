@@ -29,7 +29,13 @@ impl FacetVisibility {
         let is_told = surface.model.exposed.len() == triangles && *limits == FacetVisibilityLimits::default();
         let told = |triangle: usize| match is_told.then(|| surface.model.exposed[triangle]) {
             None => UNKNOWN,
-            Some(exposed) => if exposed { EXPOSED } else { HIDDEN },
+            Some(exposed) => {
+                if exposed {
+                    EXPOSED
+                } else {
+                    HIDDEN
+                }
+            }
         };
         FacetVisibility { known: (0..triangles).map(|t| AtomicU8::new(told(t))).collect(), limits: *limits }
     }

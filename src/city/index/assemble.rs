@@ -47,7 +47,9 @@ pub(super) fn assembled(words: &Words, blocks: &[Block], sights: &[BlockSight]) 
         facet_of[block][local] = model.facets.len() as u32;
         let taken = Taken { block: &blocks[block], objects: &object_of[block], vertices: &vertex_of[block] };
         taken.add_facet(&mut model, &taken.block.facets[local], &shares[block][local]);
-        if let Some(exposed) = sights.get(block).and_then(|sight| sight.exposed.get(shares[block][local].triangles.clone())) {
+        if let Some(exposed) =
+            sights.get(block).and_then(|sight| sight.exposed.get(shares[block][local].triangles.clone()))
+        {
             model.exposed.extend_from_slice(exposed);
         }
     }
@@ -168,10 +170,7 @@ impl Taken<'_> {
         model.facets.push(Facet {
             outline: rings.next().unwrap_or_default(),
             holes: rings.collect(),
-            plane: Plane {
-                normal: Vector3::from(record.normal.map(|value| value.get())),
-                offset: record.offset.get(),
-            },
+            plane: Plane { normal: Vector3::from(record.normal.map(|value| value.get())), offset: record.offset.get() },
             area: record.area.get(),
             object: ObjectId(self.objects[record.object.get() as usize]),
             kind: kind_of_code(record.kind),

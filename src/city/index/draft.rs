@@ -6,6 +6,7 @@ use super::assemble::Assembled;
 use super::open::{box_of, names_of_cities, read_blocks};
 use super::pack::{SAME, packed};
 use super::plan::{BLOCK_M, block_plans};
+use super::sequence::Sequence;
 use super::stamp::{FileStamp, FolderStamp, with_companions};
 use super::words::Words;
 use crate::city::files::CityFiles;
@@ -35,14 +36,31 @@ impl IndexDraft {
         options: &CityOptions,
         path: &Path,
     ) -> Result<IndexDraft, CityError> {
+        IndexDraft::of_long_city(city, terrain, options, path, STREAMED_BYTES)
+    }
+
+    /// The same, where a sequence of at least so many bytes is not held in memory.
+    pub(super) fn of_long_city(
+        city: &[PathBuf],
+        terrain: &[PathBuf],
+        options: &CityOptions,
+        path: &Path,
+        streamed_bytes: u64,
+    ) -> Result<IndexDraft, CityError> {
         let (files, folders) = stamps(city, terrain)?;
-        let model = read_city_files(city, terrain, options)?;
         let of_path = |fault| CityError::Index { path: path.to_owned(), fault };
-        let mut writer = IndexWriter::create(path).map_err(|error| of_path(error.into()))?;
+        let mut writer = written(IndexWriter::create(path), path)?;
+        if let ([only], []) = (city, terrain)
+            && let Some(sequence) = Sequence::of(only, options, streamed_bytes)?
+        {
+            let words = sequence.write(&mut writer, Words::of_files(files, folders))?;
+            return Ok(IndexDraft { path: path.to_owned(), writer, words });
+        }
+        let model = read_city_files(city, terrain, options)?;
         for plan in block_plans(&model) {
             let (parts, entry) = packed(&model, &plan, &SAME);
             let bytes = parts.to_bytes().map_err(of_path)?;
-            writer.add_block(&bytes, entry).map_err(|error| of_path(error.into()))?;
+            written(writer.add_block(&bytes, entry), path)?;
         }
         Ok(IndexDraft { path: path.to_owned(), writer, words: Words::of(&model, files, folders) })
     }
@@ -85,6 +103,14 @@ impl IndexDraft {
     fn fault(&self, fault: IndexFault) -> CityError {
         CityError::Index { path: self.path.clone(), fault }
     }
+}
+
+/// A CityJSONSeq from this length on is read a square kilometre at a time. Chosen: what is shorter comes to half a gigabyte of memory.
+const STREAMED_BYTES: u64 = 64 << 20;
+
+/// What became of writing to an index.
+pub(super) fn written<T>(result: std::io::Result<T>, path: &Path) -> Result<T, CityError> {
+    result.map_err(|error| CityError::Index { path: path.to_owned(), fault: error.into() })
 }
 
 /// What the files of a city are now.

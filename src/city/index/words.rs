@@ -69,6 +69,11 @@ impl SourceWords {
 }
 
 impl Words {
+    /// Of files whose model is not there yet.
+    pub fn of_files(files: Vec<FileStamp>, folders: Vec<FolderStamp>) -> Words {
+        Words::of(&CityModel::default(), files, folders)
+    }
+
     /// Of a model whose facets, objects and vertices are numbered as they are in the index.
     pub fn of(model: &CityModel, files: Vec<FileStamp>, folders: Vec<FolderStamp>) -> Words {
         Words {

@@ -5,9 +5,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::format::JsonKind;
+use crate::format::city_index::is_city_index;
 use crate::format::colmap::missing_files;
 use crate::format::file::open_regular;
-use crate::format::city_index::is_city_index;
 use crate::format::gltf::is_glb;
 use crate::reconstruction::{SfmSource, recognise};
 

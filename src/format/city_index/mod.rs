@@ -21,6 +21,6 @@ mod writer;
 pub use block::{Block, BlockParts};
 pub use fault::IndexFault;
 pub use file::{IndexFile, is_city_index};
-pub use records::{BlockEntry, FacetRecord, ObjectRecord, OWN_VERTEX, VertexRecord, WallRecord};
+pub use records::{BlockEntry, FacetRecord, OWN_VERTEX, ObjectRecord, VertexRecord, WallRecord};
 pub use sight::BlockSight;
 pub use writer::IndexWriter;

@@ -38,6 +38,20 @@ impl IndexWriter {
         Ok(())
     }
 
+    /// Where the next block will be, and its number.
+    pub fn position(&self) -> (u64, usize) {
+        (self.at, self.entries.len())
+    }
+
+    /// Takes back what was added since.
+    pub fn rewind(&mut self, (at, entries): (u64, usize)) -> io::Result<()> {
+        self.out.flush()?;
+        self.out.get_ref().set_len(at)?;
+        self.at = at;
+        self.entries.truncate(entries);
+        Ok(())
+    }
+
     pub fn add_sight(&mut self, block: usize, sight: &BlockSight) -> io::Result<()> {
         self.entries[block].sight = self.add(&sight.to_bytes())?;
         Ok(())

@@ -66,7 +66,8 @@ numbers! {
         reach_sigmas, prior_cost, least_tilt_rad, model_unit_m, noise_sigmas, plane_sigma_m, least_point_sigma_m,
         same_normal_deg, grazing_deg, upright_sin, tells_floors_rad;
         whole: ;
-        not: facet_visibility, patches, up, search, refinement, line_search, occlusion, null_poses, evidence, uncertainty, verdict
+        not: facet_visibility, patches, up, search, refinement, line_search, occlusion, null_poses, evidence, uncertainty, verdict,
+            place_search
     }
     verdict: verdict as VerdictLimits {
         false_alarm, same_m, default_accuracy_m, default_accuracy_share, scale_sigmas, scale_m;
@@ -86,8 +87,8 @@ numbers! {
         known_sigma_rad, distinct_sigmas, comparable_share, cost_of_leaving, votes_of_kernel, steepest_view, upside_down,
         quarter_turned;
         whole: most_known;
-        // Habits of voters, each three numbers measured together.
-        not: patches, cameras
+        // Habits of voters, each three numbers measured together; what is asked without a start, which these tasks have.
+        not: patches, cameras, cameras_sigma_rad, axis_share
     }
     search: search as SearchLimits {
         gate_units, same_place_m, smallest_target_m2, same_angle_rad, same_cos, row_sigma_m, row_sigma_per_m, informative_sigma_m,

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use super::options::{AlignOptions, Up};
+use super::options::{AlignOptions, Place, Up};
 use super::outcome::Outcome;
 use super::whereabouts::{Whereabouts, up_of};
-use super::{evidence, report};
+use super::{evidence, report, whereabouts};
 use crate::correspondence::{Candidate, Hypotheses, PoseRefiner, Scene, candidates, joined, search};
 use crate::evidence::CandidateEvaluation;
 use crate::geometry::{Similarity, StartSigmas};
@@ -27,16 +27,36 @@ pub fn align(
 ) -> Result<Alignment, Cancelled> {
     observer.progress(Stage::Patches, 0, 0);
     let patches = patches(reconstruction, superpixels, &options.limits.patches);
-    let whereabouts = match Whereabouts::find(city, reconstruction, &patches, options, observer)? {
+    let Some(start) = whereabouts::in_place(city, reconstruction, &patches, options) else {
+        return align_patches(city, reconstruction, &patches, options, observer);
+    };
+    // The false alarms that are allowed are shared between the two searches.
+    let each = options.with_false_alarm(options.limits.verdict.false_alarm / 2.0);
+    let there = AlignOptions { place: Place::Start(start), ..each };
+    let in_place = align_patches(city, reconstruction, &patches, &there, observer)?;
+    match in_place.verdict {
+        Verdict::Failed => align_patches(city, reconstruction, &patches, &each, observer),
+        Verdict::Aligned | Verdict::Undetermined | Verdict::Ambiguous => Ok(in_place),
+    }
+}
+
+fn align_patches(
+    city: &PreparedCity,
+    reconstruction: &Reconstruction,
+    patches: &Patches,
+    options: &AlignOptions,
+    observer: &dyn Observer,
+) -> Result<Alignment, Cancelled> {
+    let whereabouts = match Whereabouts::find(city, reconstruction, patches, options, observer)? {
         Ok(whereabouts) => whereabouts,
-        Err(obstacle) => return Ok(report::refused(&obstacle, city, &patches, options)),
+        Err(obstacle) => return Ok(report::refused(&obstacle, city, patches, options)),
     };
     check_cancelled(observer)?;
     observer.progress(Stage::City, 0, 0);
-    let task = Task { city, patches: &patches, whereabouts: &whereabouts, options, observer };
+    let task = Task { city, patches, whereabouts: &whereabouts, options, observer };
     let answer = task.answer()?;
-    let up_elsewhere = up_elsewhere(&answer.decision, &patches, &whereabouts, options);
-    Ok(report::tell(answer, &patches, up_elsewhere, city, options))
+    let up_elsewhere = up_elsewhere(&answer.decision, patches, &whereabouts, options);
+    Ok(report::tell(answer, patches, up_elsewhere, city, options))
 }
 
 /// What is to be aligned, and how.

@@ -123,6 +123,28 @@ impl Whereabouts {
     }
 }
 
+/// A start at the coordinates that a reconstruction has, where it seems to stand in the city's own system already: its file names a system, or its
+/// coordinates are far from zero, and they lie in the city.
+pub(super) fn in_place(
+    city: &PreparedCity,
+    reconstruction: &Reconstruction,
+    patches: &Patches,
+    options: &AlignOptions,
+) -> Option<Start> {
+    let Place::Anywhere(prior) = &options.place else { return None };
+    let (low, high) = city.model.bounds()?;
+    let middle = patches.middle();
+    let local = middle - city.model.origin;
+    let is_in_city = (0..2).all(|k| (low[k]..=high[k]).contains(&local[k]));
+    let is_allowed = prior.near.is_none_or(|near| near.holds([middle.x, middle.y]));
+    let is_georeferenced = reconstruction.crs.is_some() || middle.coords.xy().norm() > FAR_FROM_ZERO;
+    let fits = is_in_city && is_allowed && is_georeferenced && options.fixed_scale.is_none();
+    fits.then(|| Start::with_default_sigmas(Similarity::identity()))
+}
+
+/// No frame of a camera begins so far off, units. Chosen: reconstructions without a reference have extents of some ten units.
+const FAR_FROM_ZERO: f64 = 1000.0;
+
 /// The start with a scale that is given in place of its own, about the cloud's middle.
 fn of_given_scale(start: &Start, fixed_scale: Option<f64>, patches: &Patches) -> Start {
     let city_from_sfm = start.city_from_sfm();

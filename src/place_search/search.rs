@@ -75,13 +75,14 @@ fn views<'a>(patches: &Patches, uprights: &'a [Upright], limits: &Limits) -> Res
 /// Why a cloud has no place that walls could tell.
 fn obstacle(cloud: &CloudWalls, limits: &PlaceSearchLimits) -> Option<PlaceObstacle> {
     let Some(main) = cloud.walls.first() else { return Some(PlaceObstacle::NoWalls) };
-    if cloud.walls.len() < limits.fewest_walls {
-        return Some(PlaceObstacle::TooFewWalls { found: cloud.walls.len(), needed: limits.fewest_walls });
-    }
     let all: f64 = cloud.walls.iter().map(|wall| wall.length).sum();
     let across = cloud.walls.iter().filter(|wall| !is_parallel(main, wall, limits.one_direction_deg));
     let across: f64 = across.map(|wall| wall.length).sum();
-    (across < limits.least_across * all).then_some(PlaceObstacle::OneDirection)
+    if across < limits.least_across * all {
+        return Some(PlaceObstacle::OneDirection);
+    }
+    let found = cloud.walls.len();
+    (found < limits.fewest_walls).then_some(PlaceObstacle::TooFewWalls { found, needed: limits.fewest_walls })
 }
 
 /// Where walls matter if the middle of the cloud lies in a disc: as far beyond it as the largest cloud reaches.

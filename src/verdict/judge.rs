@@ -161,13 +161,14 @@ fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> 
         SearchSpace::City { bits } => bits.exp2() - 1.0,
     };
     let search_bits = (1.0 + others_searched.max(tried.sum::<f64>())).log2();
+    let excess_bits = excess_of_chance(evidence, others, search_bits + limits.margin_bits());
     // Odds against the pose: chance among all that were tried, and each rival.
-    let chance = (search_bits - best.bits).exp2();
+    let chance = (search_bits + excess_bits - best.bits).exp2();
     let of_rivals: f64 = within.iter().map(|r| (r.posterior_bits() - best.posterior_bits()).exp2()).sum();
     Certainty {
         bits: best.bits,
         search_bits,
-        needed_bits: search_bits + limits.margin_bits(),
+        needed_bits: search_bits + excess_bits + limits.margin_bits(),
         probability: 1.0 / (1.0 + chance + of_rivals),
         false_alarm: limits.false_alarm,
         witnesses: evidence.witnesses,
@@ -175,6 +176,14 @@ fn certainty(evidence: &Evidence, others: &[&Rival], limits: &VerdictLimits) -> 
         by_chance: evidence.by_chance,
         most_bits_by_chance: evidence.most_by_chance,
     }
+}
+
+/// By how much chance does better here than bits allow: among n poses by chance the best has log2 n bits and b more with a probability of 2^-b
+/// at most (Markov's inequality, since bits are the logarithm of a likelihood ratio). A pose that has enough by itself is no chance but a rival.
+fn excess_of_chance(evidence: &Evidence, others: &[&Rival], enough_bits: f64) -> f64 {
+    let is_rival = others.iter().any(|rival| rival.by_chance && rival.bits >= enough_bits);
+    let expected = (evidence.by_chance.max(1) as f64).log2();
+    if is_rival { 0.0 } else { (evidence.most_by_chance - expected).max(0.0) }
 }
 
 fn alternatives(best: &Rival, others: &[&Rival], hold: &PoseInformation) -> Vec<Alternative> {

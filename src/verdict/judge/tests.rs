@@ -25,18 +25,40 @@ fn hold(open: Option<usize>) -> PoseInformation {
     }
 }
 
-fn decision(rivals: &[Rival], hold: &PoseInformation) -> Decision {
+fn evidence(rivals: &[Rival], hold: &PoseInformation) -> Evidence {
     let (rivals, hold) = (rivals.to_vec(), hold.clone());
-    let evidence = Evidence {
-        space: SearchSpace::AboutStart,
-        rivals,
-        hold,
-        witnesses: 20,
-        speaking: 12,
-        by_chance: 128,
-        most_by_chance: 2.0,
+    let space = SearchSpace::AboutStart;
+    Evidence { space, rivals, hold, witnesses: 20, speaking: 12, by_chance: 128, most_by_chance: 2.0 }
+}
+
+fn decision(rivals: &[Rival], hold: &PoseInformation) -> Decision {
+    judge(&evidence(rivals, hold), &Limits::default().verdict)
+}
+
+#[test]
+fn a_pose_of_a_whole_city_needs_as_many_bits_more_as_there_were_poses() {
+    let of = |bits: f64| {
+        let space = SearchSpace::City { bits: 21.0 };
+        judge(&Evidence { space, ..evidence(&[rival([0.0; 3], bits)], &hold(None)) }, &Limits::default().verdict)
     };
-    judge(&evidence, &Limits::default().verdict)
+    assert_eq!((of(30.9).verdict, of(31.1).verdict), (Verdict::Failed, Verdict::Aligned));
+    assert!((of(31.1).certainty.search_bits - 21.0).abs() < 1e-9);
+    assert!(of(30.9).reason.contains("--near"), "{}", of(30.9).reason);
+}
+
+#[test]
+fn where_chance_does_better_than_bits_allow_as_many_more_are_needed() {
+    let of = |bits: f64, most_by_chance: f64, others: &[Rival]| {
+        let rivals: Vec<Rival> = std::iter::once(rival([0.0; 3], bits)).chain(others.iter().cloned()).collect();
+        judge(&Evidence { most_by_chance, ..evidence(&rivals, &hold(None)) }, &Limits::default().verdict)
+    };
+    // Of 128 poses by chance the best may have seven bits.
+    assert_eq!(of(12.0, 7.0, &[]).verdict, Verdict::Aligned);
+    assert_eq!(of(12.0, 9.1, &[]).verdict, Verdict::Failed);
+    assert_eq!(of(12.2, 9.1, &[]).verdict, Verdict::Aligned);
+    // The right pose beyond the reach of a wrong start is a rival.
+    let right = Rival { by_chance: true, beyond_start: true, ..rival([60.0, 0.0, 0.0], 80.0) };
+    assert_eq!(of(12.0, 80.0, &[right]).verdict, Verdict::Ambiguous);
 }
 
 /// The data say 2 % more than what was given, or as much.

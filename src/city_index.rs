@@ -139,3 +139,6 @@ fn record(wall: &CityWall) -> WallRecord {
         top_m: top_m.into(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,7 @@
 //! `stamp.rs` tells whether the files are still those that were read.
 
 mod assemble;
+mod counted;
 mod draft;
 mod open;
 mod pack;

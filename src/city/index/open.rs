@@ -39,14 +39,7 @@ impl CityIndex {
     pub fn open(path: &Path) -> Result<CityIndex, CityError> {
         let of_path = |fault| CityError::Index { path: path.to_owned(), fault };
         let file = IndexFile::open(path).map_err(of_path)?;
-        let mut words: Words = serde_json::from_slice(&file.words).map_err(|error| {
-            let found = error.to_string();
-            of_path(IndexFault::Nonsense { what: "the directory", at: 0, found })
-        })?;
-        if !words.origin.iter().all(|value| value.is_finite()) {
-            let found = "an origin that is nowhere".to_owned();
-            return Err(of_path(IndexFault::Nonsense { what: "the directory", at: 0, found }));
-        }
+        let mut words = Words::read(&file.words).map_err(of_path)?;
         let (change, missing) = change(&words.files, &words.folders, path, names_of_cities)
             .map_err(|reason| CityError::Unreadable { path: path.to_owned(), reason })?;
         if let Some(change) = change {

@@ -11,29 +11,27 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use super::counted::Counted;
 use super::draft::written;
 use super::pack::{Orders, packed};
 use super::plan::block_plans;
 use super::survey::{Feature, Survey};
 use super::tally::Tally;
 use super::words::{VertexNumbers, Words};
-use crate::city::build::{BuiltPart, build_part};
+use crate::city::build::build_part;
 use crate::city::frame::Frame;
 use crate::city::levels::choose;
 use crate::city::orientation::FileSense;
 use crate::city::origin::{origin_of, sample_step};
 use crate::city::source::Source;
 use crate::city::{CityError, CityOptions, CityRole, CityUnit, CityUp};
-use crate::format::city_index::{BlockEntry, IndexWriter, OWN_VERTEX};
+use crate::format::city_index::{BlockEntry, IndexWriter};
 use crate::format::file::open_regular;
 use crate::geometry::{Point3, Vector3};
 
 /// Side of what is built together, metres, and the text that it is at most. Chosen: some thousand houses.
 const SQUARE_M: f64 = 1000.0;
 const SQUARE_BYTES: u64 = 32 << 20;
-
-/// Crossings of polygons with themselves that one polygon can have.
-const CROSSINGS_BITS: u32 = 24;
 
 /// A sequence whose frame and origin are known.
 pub(super) struct Sequence<'a> {
@@ -209,7 +207,8 @@ impl<'a> Sequence<'a> {
         let Some(part) = build_part(&source, self.origin, sense)? else {
             return Ok((Vec::new(), Tally::of_source(&source, &|_| 0)));
         };
-        let counted = Counted::new(self, features, &source, &part);
+        let of_features: Vec<_> = features.iter().map(|&at| (*self.feature(at), self.before[at as usize])).collect();
+        let counted = Counted::new(&of_features, &source, &part);
         let orders = Orders {
             facet: &|facet| counted.faces[part.facet_faces[facet as usize] as usize],
             object: &|object| counted.objects[object as usize],
@@ -222,51 +221,5 @@ impl<'a> Sequence<'a> {
             Ok(PackedBlock { bytes, entry })
         });
         Ok((blocks.collect::<Result<_, CityError>>()?, tally))
-    }
-}
-
-/// The places of a part's faces, objects and vertices among those of the whole.
-struct Counted {
-    faces: Vec<u32>,
-    objects: Vec<u32>,
-    vertices: Vec<u64>,
-}
-
-impl Counted {
-    fn new(sequence: &Sequence, features: &[u32], source: &Source, part: &BuiltPart) -> Counted {
-        let (mut faces, mut objects, mut corners) = (Vec::new(), Vec::new(), Vec::new());
-        for &at in features {
-            let (own, before) = (sequence.feature(at), sequence.before[at as usize]);
-            faces.extend((before[0]..).take(own.faces as usize).map(|face| face as u32));
-            objects.extend((before[1]..).take(own.objects as usize).map(|object| object as u32));
-            corners.extend((before[2]..).take(own.corners as usize));
-        }
-        // A vertex is numbered by the first corner that uses it, as the whole file's are.
-        let mut vertices = vec![u64::MAX; part.model.vertices.len()];
-        for (&corner, &position) in corners.iter().zip(&source.corners) {
-            let vertex = &mut vertices[part.vertex_of[position as usize] as usize];
-            *vertex = (*vertex).min(corner);
-        }
-        // What is left are crossings of polygons with themselves, which come after all corners, in the order of the polygons.
-        for (facet, &face) in part.model.facets.iter().zip(&part.facet_faces) {
-            let triangles = &part.model.triangles[facet.triangles.start as usize..facet.triangles.end as usize];
-            let own = OWN_VERTEX | (u64::from(faces[face as usize]) << CROSSINGS_BITS);
-            for &vertex in triangles.iter().flatten() {
-                let order = &mut vertices[vertex as usize];
-                *order = if *order == u64::MAX { own } else { *order };
-            }
-        }
-        number_crossings(&mut vertices);
-        Counted { faces, objects, vertices }
-    }
-}
-
-/// Crossings of one polygon follow each other.
-fn number_crossings(vertices: &mut [u64]) {
-    let (mut last, mut count) = (0, 0);
-    for vertex in vertices.iter_mut().filter(|vertex| (OWN_VERTEX..u64::MAX).contains(*vertex)) {
-        count = if *vertex == last { count + 1 } else { 0 };
-        last = *vertex;
-        *vertex += count;
     }
 }

@@ -92,7 +92,7 @@ impl Survey {
     }
 
     fn look(&self, line: &Line, options: &CityOptions) -> Result<Seen, Box<CityJsonError>> {
-        let file = self.parsed(&line.text).map_err(|error| {
+        let file = self.parsed(line.text.trim_ascii_end()).map_err(|error| {
             // It stands behind the header here, and farther down in the file.
             Box::new(CityJsonError { line: error.line + line.number as usize - 2, ..error })
         })?;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::stamp::{FileStamp, FolderStamp};
 use crate::city::{CityContents, CityModel, CityRole, CitySize, CitySource, CityWarning, Crs};
+use crate::format::city_index::IndexFault;
 
 /// What an index says of the city as a whole.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -69,6 +70,19 @@ impl SourceWords {
 }
 
 impl Words {
+    /// Reads the words of a directory, whose numbers must make sense.
+    pub fn read(json: &[u8]) -> Result<Words, IndexFault> {
+        let nonsense = |found: String| IndexFault::Nonsense { what: "the directory", at: 0, found };
+        let words: Words = serde_json::from_slice(json).map_err(|error| nonsense(error.to_string()))?;
+        let is_place = words.origin.iter().all(|value| value.is_finite());
+        let is_forward = |[from, to]: [u32; 2]| from <= to;
+        let are_sources = words.sources.iter().all(|source| is_forward(source.facets) && is_forward(source.objects));
+        match is_place && are_sources {
+            true => Ok(words),
+            false => Err(nonsense("an origin that is nowhere, or files that end before they begin".to_owned())),
+        }
+    }
+
     /// Of files whose model is not there yet.
     pub fn of_files(files: Vec<FileStamp>, folders: Vec<FolderStamp>) -> Words {
         Words::of(&CityModel::default(), files, folders)

@@ -111,7 +111,7 @@ impl<'a> Block<'a> {
             (sum(&mut self.ring_lengths.iter().copied()) == self.corners.len() as u64, "corners are of no ring"),
             (sum(&mut facets().map(|f| f.triangles)) == self.triangles.len() as u64, "triangles are of no facet"),
             (facets().all(|f| f.rings.get() > 0), "a facet has no outline"),
-            (self.ring_lengths.iter().all(|length| length.get() > 0), "a ring has no corners"),
+            (self.ring_lengths.iter().all(|length| length.get() >= 3), "a ring has less than three corners"),
             (facets().all(|f| f.object.get() < objects), "a facet is of no object"),
             (self.corners.iter().all(is_vertex), "a corner is at no vertex"),
             (self.triangles.iter().flatten().all(is_vertex), "a triangle is at no vertex"),

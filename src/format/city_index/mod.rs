@@ -8,7 +8,7 @@
 //!
 //! Numbers are little-endian. A length is held against the file before memory is taken for it, blocks may not overlap, and every part
 //! has a checksum (CRC-32) that is looked at when the part is read: header and directory when the file is opened, a block when it is needed.
-//! Blocks are read by their place, not mapped: mapping is `unsafe`, which this crate does without, and would save a tenth of the time.
+//! Blocks are read by their place, not mapped: mapping is `unsafe`, which this crate does without.
 //! Some thousand boxes are looked through one by one in microseconds, so there is no tree over them.
 
 mod block;

@@ -104,7 +104,7 @@ pub use geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 pub mod types {
     pub use crate::city::{
         CityChange, CityContents, CityDefect, CityError, CityPlace, CityRole, CitySize, CitySource, CityWarning, Crs,
-        FacetId, IndexOverview, KindCounts, Lod, ObjectId, SurfaceKind,
+        FacetId, IndexOverview, KindCounts, Lod, ObjectId, SurfaceKind, WholeCity,
     };
     pub use crate::city_index::CityIndexError;
     pub use crate::export::{ExportError, OutputError, ReportError};

@@ -44,7 +44,7 @@ pub use contents::{CityContents, KindCounts};
 pub use error::CityError;
 pub use index::{CityChange, CityIndex, IndexDraft, IndexOverview, Surroundings};
 pub use levels::CityLod;
-pub use model::{CityModel, CityRole, CitySize, CitySource, Facet, FacetId, ObjectId};
+pub use model::{CityModel, CityRole, CitySize, CitySource, Facet, FacetId, ObjectId, WholeCity};
 pub use options::{CityOptions, CityUnit, CityUp};
 pub use plan_box::PlanBox;
 pub use read::{read_city, read_city_contents, read_city_files, read_city_within};

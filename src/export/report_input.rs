@@ -40,7 +40,7 @@ pub struct SfmCounts {
 impl CityCounts {
     pub fn of(city: &CityModel, files: Vec<String>) -> CityCounts {
         // Of the whole city, however much of it was read.
-        let CitySize { objects, facets, triangles } = city.part_of.unwrap_or_else(|| CitySize::of(city));
+        let CitySize { objects, facets, triangles } = city.whole_size();
         CityCounts { files, crs: city.crs.clone(), objects, facets, triangles }
     }
 }

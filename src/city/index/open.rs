@@ -112,7 +112,7 @@ impl CityIndex {
 
     fn read(&self, entries: &[&BlockEntry]) -> Result<CityModel, CityError> {
         let mut model = read_blocks(&self.file, &self.words, entries).map_err(|fault| self.fault(fault))?.model;
-        model.part_of = (entries.len() < self.file.entries.len()).then_some(self.words.size);
+        model.part_of = (entries.len() < self.file.entries.len()).then(|| self.words.whole());
         Ok(model)
     }
 

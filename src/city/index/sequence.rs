@@ -84,7 +84,7 @@ impl<'a> Sequence<'a> {
             tally = self.write_as(writer, FileSense::Known { turned: true })?;
         }
         let (objects, faces) = self.sums();
-        let (size, precision_m) = (tally.size(objects as usize), tally.precision_m);
+        let (size, precision_m, bounds) = (tally.size(objects as usize), tally.precision_m, tally.bounds());
         let warnings = tally.warnings(&self.frame, self.path, self.options);
         let contents = self.survey.contents.clone();
         let source = super::words::SourceWords {
@@ -96,7 +96,16 @@ impl<'a> Sequence<'a> {
             contents,
         };
         let (crs, origin) = (self.frame.crs.clone(), self.origin.into());
-        Ok(Words { crs, origin, size, warnings, sources: vec![source], vertices: VertexNumbers::ByPlace, ..words })
+        Ok(Words {
+            crs,
+            origin,
+            size,
+            bounds,
+            warnings,
+            sources: vec![source],
+            vertices: VertexNumbers::ByPlace,
+            ..words
+        })
     }
 
     fn sums(&self) -> (u32, u32) {

@@ -10,7 +10,7 @@ use crate::city::units::{guess_by_houses, heights_of_houses};
 use crate::city::upright::UprightAreas;
 use crate::city::validate::odd_extent;
 use crate::city::warning::Warnings;
-use crate::city::{CityDefect, CityOptions, CityPlace, CitySize, CityUp, CityWarning};
+use crate::city::{CityDefect, CityModel, CityOptions, CityPlace, CitySize, CityUp, CityWarning};
 use crate::geometry::Point3;
 
 /// Sums over parts.
@@ -20,6 +20,8 @@ pub(super) struct Tally {
     pub precision_m: f64,
     facets: usize,
     triangles: usize,
+    /// Objects that have facets.
+    judged: u64,
     heights: Vec<f64>,
     areas: UprightAreas,
     extent: Option<(Point3<f64>, Point3<f64>)>,
@@ -36,6 +38,7 @@ impl Tally {
             told: part.told,
             facets: part.model.facets.len(),
             triangles: part.model.triangles.len(),
+            judged: judged(&part.model),
             areas: UprightAreas::of(&part.model),
             extent: part.model.bounds(),
             warnings,
@@ -58,6 +61,7 @@ impl Tally {
         self.precision_m = self.precision_m.max(other.precision_m);
         self.facets += other.facets;
         self.triangles += other.triangles;
+        self.judged += other.judged;
         self.heights.extend(other.heights);
         self.areas.add(&other.areas);
         self.extent = match (self.extent, other.extent) {
@@ -65,6 +69,11 @@ impl Tally {
             (own, other) => own.or(other),
         };
         self.warnings.extend(other.warnings);
+    }
+
+    /// Lowest and highest corner.
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
+        self.extent.map_or([[0.0; 3]; 2], |(low, high)| [low.into(), high.into()])
     }
 
     pub fn size(&self, objects: usize) -> CitySize {
@@ -86,9 +95,24 @@ impl Tally {
         self.warnings.sort_by_key(|(order, warning)| (step_of(&warning.defect), *order));
         let mut counted = Warnings::default();
         counted.add_all(self.warnings.into_iter().map(|(_, warning)| warning));
-        counted.add_all(odd_extent(across_m).map(of_whole));
-        decided.map(of_whole).chain(counted.into_list()).collect()
+        let mut counted = counted.into_list();
+        // Parts in which nothing is inside out do not say how many objects they have.
+        for warning in &mut counted {
+            if let CityDefect::InsideOut { of } = &mut warning.defect {
+                *of = self.judged;
+            }
+        }
+        let odd_extent = odd_extent(across_m);
+        decided.map(of_whole).chain(counted).chain(odd_extent.map(of_whole)).collect()
     }
+}
+
+/// Objects that have facets.
+fn judged(model: &CityModel) -> u64 {
+    let mut objects: Vec<u32> = model.facets.iter().map(|facet| facet.object.0).collect();
+    objects.sort_unstable();
+    objects.dedup();
+    objects.len() as u64
 }
 
 fn placed(warnings: &[CityWarning], source: &Source, object_order: &dyn Fn(u32) -> u32) -> Vec<(u32, CityWarning)> {

@@ -84,7 +84,7 @@ fn near_a_place_only_the_blocks_it_touches_are_read_and_their_facets_are_those_o
     assert!(touched < all, "{touched} of {all}");
     let (whole, part) = (read(&room.city()).unwrap(), index.read_within(&near()).unwrap());
     assert!(part.facets.len() < whole.facets.len());
-    assert_eq!(part.part_of.unwrap().facets, whole.facets.len());
+    assert_eq!(part.part_of.unwrap().size.facets, whole.facets.len());
     let corners = |model: &CityModel| -> Vec<String> {
         let corner = |&vertex: &u32| model.vertices[vertex as usize];
         let of = |facet: &crate::city::Facet| {
@@ -93,6 +93,7 @@ fn near_a_place_only_the_blocks_it_touches_are_read_and_their_facets_are_those_o
         };
         model.facets.iter().map(of).collect()
     };
+    assert_eq!(part.bounds(), whole.bounds());
     let (all, some) = (corners(&whole), corners(&part));
     let mut rest = all.iter();
     assert!(some.iter().all(|facet| rest.any(|other| other == facet)), "in the order of the whole");

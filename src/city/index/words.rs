@@ -5,8 +5,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::stamp::{FileStamp, FolderStamp};
-use crate::city::{CityContents, CityModel, CityRole, CitySize, CitySource, CityWarning, Crs};
+use crate::city::{CityContents, CityModel, CityRole, CitySize, CitySource, CityWarning, Crs, WholeCity};
 use crate::format::city_index::IndexFault;
+use crate::geometry::Point3;
 
 /// What an index says of the city as a whole.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -16,6 +17,8 @@ pub(super) struct Words {
     pub origin: [f64; 3],
     pub crs: Option<Crs>,
     pub size: CitySize,
+    /// Lowest and highest corner of the box about all vertices; metres about the origin.
+    pub bounds: [[f64; 3]; 2],
     pub vertices: VertexNumbers,
     pub sources: Vec<SourceWords>,
     pub warnings: Vec<CityWarning>,
@@ -74,13 +77,19 @@ impl Words {
     pub fn read(json: &[u8]) -> Result<Words, IndexFault> {
         let nonsense = |found: String| IndexFault::Nonsense { what: "the directory", at: 0, found };
         let words: Words = serde_json::from_slice(json).map_err(|error| nonsense(error.to_string()))?;
-        let is_place = words.origin.iter().all(|value| value.is_finite());
+        let is_place = words.origin.iter().chain(words.bounds.iter().flatten()).all(|value| value.is_finite());
         let is_forward = |[from, to]: [u32; 2]| from <= to;
         let are_sources = words.sources.iter().all(|source| is_forward(source.facets) && is_forward(source.objects));
         match is_place && are_sources {
             true => Ok(words),
             false => Err(nonsense("an origin that is nowhere, or files that end before they begin".to_owned())),
         }
+    }
+
+    /// What is told to a part of it.
+    pub fn whole(&self) -> WholeCity {
+        let [low, high] = self.bounds.map(Point3::from);
+        WholeCity { size: self.size, low, high }
     }
 
     /// Of files whose model is not there yet.
@@ -95,6 +104,7 @@ impl Words {
             origin: model.origin.into(),
             crs: model.crs.clone(),
             size: CitySize::of(model),
+            bounds: model.bounds().map_or([[0.0; 3]; 2], |(low, high)| [low.into(), high.into()]),
             vertices: VertexNumbers::OfCity,
             sources: model.sources.iter().map(SourceWords::of).collect(),
             warnings: model.warnings.clone(),

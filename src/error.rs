@@ -1,6 +1,7 @@
 //! All errors of the library as one.
 
 use crate::city::CityError;
+use crate::city_index::CityIndexError;
 use crate::export::{ExportError, OutputError, ReportError};
 use crate::format::PlacementError;
 use crate::format::positions::PositionsError;
@@ -18,6 +19,8 @@ use crate::reconstruction::ReconstructionError;
 pub enum Error {
     #[error(transparent)]
     City(#[from] CityError),
+    #[error(transparent)]
+    CityIndex(#[from] CityIndexError),
     #[error(transparent)]
     Reconstruction(#[from] ReconstructionError),
     #[error(transparent)]

@@ -14,6 +14,7 @@
 //! | set a reconstruction into a city | [`align()`], [`AlignOptions`], [`Up`]; what comes back: [`Alignment`] |
 //! | know how sure it is | [`Verdict`], [`Certainty`], [`Freedom`], [`Alternative`], [`types::ModelErrors`] |
 //! | read a city model | [`read_city`], [`CityOptions`], [`CityModel`], [`PreparedCity`] |
+//! | prepare a city once, and read any part of it | [`write_city_index`], [`CityIndex`], [`read_city_within`] |
 //! | read a reconstruction and a start | [`read_reconstruction`], [`Reconstruction`], [`read_start`], [`Start`] |
 //! | get a start from positions or control points | [`read_positions`], [`from_positions`], [`read_control_points`], [`from_control_points`], [`agreed`]; what comes back: [`Estimate`] |
 //! | use label images or photographs | [`lift_superpixels`], [`SuperpixelSource`], [`SuperpixelOptions`] |
@@ -44,6 +45,7 @@ mod robust;
 mod planes;
 mod georeference;
 mod place_search;
+mod city_index;
 mod correspondence;
 mod evidence;
 mod uncertainty;
@@ -70,8 +72,10 @@ pub use verdict::{Alignment, Alternative, Certainty, Freedom, Verdict};
 
 // City, reconstruction, start.
 pub use city::{
-    CityLod, CityModel, CityOptions, CityUnit, CityUp, Facet, read_city, read_city_contents, read_city_files,
+    CityIndex, CityLod, CityModel, CityOptions, CityUnit, CityUp, Facet, PlanBox, read_city, read_city_contents,
+    read_city_files, read_city_within,
 };
+pub use city_index::write_city_index;
 pub use format::control::read_control_points;
 pub use format::positions::read_positions;
 pub use format::read_start;
@@ -99,10 +103,12 @@ pub use geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 /// What the models and results are made of, and the errors of single functions.
 pub mod types {
     pub use crate::city::{
-        CityContents, CityDefect, CityError, CityPlace, CityRole, CitySource, CityWarning, Crs, FacetId, KindCounts,
-        Lod, ObjectId, SurfaceKind,
+        CityChange, CityContents, CityDefect, CityError, CityPlace, CityRole, CitySize, CitySource, CityWarning, Crs,
+        FacetId, IndexOverview, KindCounts, Lod, ObjectId, SurfaceKind, WholeCity,
     };
+    pub use crate::city_index::CityIndexError;
     pub use crate::export::{ExportError, OutputError, ReportError};
+    pub use crate::format::city_index::{IndexFault, WallRecord};
     pub use crate::format::cityjson::{CityJsonError, CityJsonProblem};
     pub use crate::format::control::{ControlFile, PointRole, PointSight, StoredPoint};
     pub use crate::format::footprints::FootprintFields;

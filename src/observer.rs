@@ -33,6 +33,8 @@ pub enum Stage {
     Patches,
     /// The planes of the city are made ready.
     City,
+    /// What can be seen of a city is found out for its index; steps are blocks.
+    Index,
     /// A place is sought in the whole city; steps are its walls.
     Places,
     /// Minimal samples are drawn; steps are samples.
@@ -51,6 +53,7 @@ impl fmt::Display for Stage {
             Stage::Superpixels => "superpixels",
             Stage::Patches => "patches",
             Stage::City => "city",
+            Stage::Index => "what can be seen of the city",
             Stage::Places => "looking through the city",
             Stage::Search => "search",
             Stage::Evidence => "evidence",

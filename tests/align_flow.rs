@@ -168,11 +168,10 @@ fn a_single_wall_feeds_no_search_that_turns_freely() {
 
 #[test]
 fn says_failed_where_the_city_is_another() {
-    let mut elsewhere = options(0);
-    let mut off = *elsewhere.start.city_from_sfm();
-    off.translation += Vector3::new(45.0, 40.0, 0.0);
-    elsewhere.start = elsewhere.start.about(off);
-    let alignment = run(true, &elsewhere);
+    let start = start_off(&OFF);
+    let mut elsewhere = *start.city_from_sfm();
+    elsewhere.translation += Vector3::new(45.0, 40.0, 0.0);
+    let alignment = run(true, &AlignOptions::new(start.about(elsewhere)));
     assert_ne!(alignment.verdict, Verdict::Aligned, "{}", alignment.reason);
 }
 

@@ -24,6 +24,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("evidence", &["limits", "geometry", "planes", "correspondence"]),
     ("uncertainty", &["limits", "geometry", "city", "planes", "correspondence", "robust"]),
     ("verdict", &["limits", "geometry", "robust"]),
+    ("city_index", &["limits", "observer", "format", "city", "planes", "place_search"]),
     (
         "merging",
         &[
@@ -61,7 +62,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("merge", &["limits", "observer", "geometry", "imagery", "reconstruction", "planes", "merging", "align"]),
     (
         "error",
-        &["observer", "geometry", "format", "city", "reconstruction", "imagery", "georeference", "merging", "export"],
+        &[
+            "observer",
+            "geometry",
+            "format",
+            "city",
+            "reconstruction",
+            "imagery",
+            "georeference",
+            "city_index",
+            "merging",
+            "export",
+        ],
     ),
     ("inspect", &["limits", "geometry", "format", "city", "reconstruction", "planes", "error"]),
     // Parses, reads, writes and prints: it neither searches nor estimates.
@@ -80,6 +92,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "planes",
             "georeference",
             "place_search",
+            "city_index",
             "verdict",
             "merging",
             "export",

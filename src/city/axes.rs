@@ -33,12 +33,33 @@ impl AxisVotes {
 }
 
 /// Asks the closed shells of all files, and where the reference system says its coordinates are. `middle`: of the files' first two axes.
-pub(super) fn vote(files: &[&SurfaceFile], crs: Option<&Crs>, middle: [f64; 2]) -> AxisVotes {
-    let volumes: Vec<f64> = files.iter().flat_map(|file| shell_volumes(file)).filter(|volume| *volume != 0.0).collect();
+pub(super) fn vote(signs: &ShellSigns, crs: Option<&Crs>, middle: [f64; 2]) -> AxisVotes {
     AxisVotes {
-        shells: volumes.len(),
-        negative: volumes.iter().filter(|volume| **volume < 0.0).count(),
+        shells: signs.shells,
+        negative: signs.negative,
         by_range: crs.and_then(|crs| order_by_range(crs.epsg?, middle)),
+    }
+}
+
+/// Closed shells that have a volume, and those of them whose volume is negative.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ShellSigns {
+    shells: usize,
+    negative: usize,
+}
+
+impl ShellSigns {
+    pub fn of(files: &[&SurfaceFile]) -> ShellSigns {
+        let volumes = files.iter().flat_map(|file| shell_volumes(file)).filter(|volume| *volume != 0.0);
+        volumes.fold(ShellSigns::default(), |signs, volume| ShellSigns {
+            shells: signs.shells + 1,
+            negative: signs.negative + usize::from(volume < 0.0),
+        })
+    }
+
+    pub fn add(&mut self, other: &ShellSigns) {
+        self.shells += other.shells;
+        self.negative += other.negative;
     }
 }
 
@@ -130,7 +151,7 @@ mod tests {
         assert!((shell_volumes(&file)[0] - 36.0).abs() < 1e-6);
         file.positions.iter_mut().for_each(|position| position.swap(0, 1));
         assert!((shell_volumes(&file)[0] + 36.0).abs() < 1e-6);
-        let votes = vote(&[&file], None, [0.0, 0.0]);
+        let votes = vote(&ShellSigns::of(&[&file]), None, [0.0, 0.0]);
         assert_eq!((votes.shells, votes.negative, votes.order()), (1, 1, Some(AxisOrder::NorthFirst)));
     }
 
@@ -138,7 +159,7 @@ mod tests {
     fn polygons_without_shells_tell_nothing() {
         let mut file = tetrahedron();
         file.surfaces.iter_mut().for_each(|surface| surface.shell = None);
-        assert_eq!(vote(&[&file], None, [0.0, 0.0]).order(), None);
+        assert_eq!(vote(&ShellSigns::of(&[&file]), None, [0.0, 0.0]).order(), None);
     }
 
     #[test]

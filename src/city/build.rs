@@ -4,13 +4,13 @@ use rayon::prelude::*;
 
 use super::facet::{Face, Shaper};
 use super::join::join_vertices;
-use super::orientation::turn_outward;
+use super::orientation::{FileSense, ToldArea, turn_outward};
 use super::origin::common_origin;
 use super::source::Source;
 use super::validate::{check_extents, validate};
 use super::warning::{CityDefect, Warnings};
 use super::{CityError, CityModel, CitySource, Facet, ObjectId};
-use crate::geometry::Point3;
+use crate::geometry::{Point3, Vector3};
 
 /// Fixed, so that results do not depend on the number of threads; large enough to be worth a thread's while.
 const FACES_PER_CHUNK: usize = 2048;
@@ -24,11 +24,40 @@ pub(super) fn build(sources: Vec<Source>) -> Result<CityModel, CityError> {
     let vertex_of = join_vertices(&mut model, &mut warnings, &sources)
         .ok_or_else(|| CityError::TooLarge { path: city.path.clone() })?;
     for (source, vertex_of) in sources.iter().zip(&vertex_of) {
-        add_source(&mut model, &mut warnings, source, vertex_of)?;
+        add_source(&mut model, &mut warnings, source, vertex_of, FileSense::Ask)?;
     }
     check_extents(&model, &mut warnings);
     model.warnings = warnings.into_list();
     Ok(model)
+}
+
+/// A part of a file, built by itself.
+pub(super) struct BuiltPart {
+    pub model: CityModel,
+    /// The face of the source that each facet was made of.
+    pub facet_faces: Vec<u32>,
+    /// The vertex of the model that each position of the source became, where a face uses it.
+    pub vertex_of: Vec<u32>,
+    pub told: ToldArea,
+}
+
+/// Builds a part of a file about the origin of the whole; `None` where nothing in it has an area.
+pub(super) fn build_part(
+    source: &Source,
+    origin: Vector3<f64>,
+    sense: FileSense,
+) -> Result<Option<BuiltPart>, CityError> {
+    let mut model = CityModel { origin, ..CityModel::default() };
+    let mut warnings = Warnings::default();
+    let vertex_of = join_vertices(&mut model, &mut warnings, std::slice::from_ref(source));
+    let vertex_of = vertex_of.and_then(|mut all| all.pop());
+    let vertex_of = vertex_of.ok_or_else(|| CityError::TooLarge { path: source.path.clone() })?;
+    let (facet_faces, told) = match add_source(&mut model, &mut warnings, source, &vertex_of, sense) {
+        Err(CityError::NoFaces { .. }) => return Ok(None),
+        added => added?,
+    };
+    model.warnings = warnings.into_list();
+    Ok(Some(BuiltPart { model, facet_faces, vertex_of, told }))
 }
 
 fn add_source(
@@ -36,7 +65,8 @@ fn add_source(
     warnings: &mut Warnings,
     source: &Source,
     vertex_of: &[u32],
-) -> Result<(), CityError> {
+    sense: FileSense,
+) -> Result<(Vec<u32>, ToldArea), CityError> {
     for warning in &source.warnings {
         warnings.add(warning.defect.clone(), warning.count, || warning.example.clone());
     }
@@ -66,10 +96,10 @@ fn add_source(
     let contents = source.contents.clone();
     let of_file = CitySource { path, role, facets: facets.clone(), objects, precision_m, contents };
     // `validate` must see the turned model.
-    turn_outward(model, &of_file, warnings, place_of);
+    let told = turn_outward(model, &of_file, warnings, sense, place_of);
     validate(model, &of_file, warnings, place_of);
     model.sources.push(of_file);
-    Ok(())
+    Ok((facet_faces, told))
 }
 
 /// Makes room for all runs; `None` where an index would not fit in 32 bits.

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use super::{Crs, Lod, SurfaceKind};
 use crate::format::surfaces::{ObjectRecord, SurfaceFile};
 
 /// What a city file holds, before levels of detail are chosen.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct CityContents {
     /// What the file is, with its version ("CityJSON 2.0").
     pub format: String,
@@ -14,6 +16,7 @@ pub struct CityContents {
     pub objects: usize,
     /// Objects that are parts of others.
     pub parts: usize,
+    #[serde(serialize_with = "as_pairs", deserialize_with = "from_pairs")]
     pub polygons: BTreeMap<Option<Lod>, KindCounts>,
     /// Polygons with holes.
     pub holes: usize,
@@ -21,8 +24,17 @@ pub struct CityContents {
     pub crs: Option<Crs>,
 }
 
+/// A map whose keys are no texts, as JSON can hold it.
+fn as_pairs<S: Serializer>(map: &BTreeMap<Option<Lod>, KindCounts>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(map)
+}
+
+fn from_pairs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<Option<Lod>, KindCounts>, D::Error> {
+    Ok(Vec::deserialize(deserializer)?.into_iter().collect())
+}
+
 /// Polygons by what they are of their object.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct KindCounts {
     pub ground: usize,
     pub roof: usize,
@@ -42,6 +54,14 @@ impl KindCounts {
     pub fn named(&self) -> impl Iterator<Item = (&'static str, usize)> {
         let KindCounts { ground, roof, wall, other, unsaid } = *self;
         [("ground", ground), ("roof", roof), ("wall", wall), ("other", other), ("unsaid", unsaid)].into_iter()
+    }
+
+    fn add_all(&mut self, other: &KindCounts) {
+        self.ground += other.ground;
+        self.roof += other.roof;
+        self.wall += other.wall;
+        self.other += other.other;
+        self.unsaid += other.unsaid;
     }
 
     fn add(&mut self, kind: Option<SurfaceKind>) {
@@ -71,6 +91,16 @@ impl CityContents {
             contents.holes += usize::from(surface.ring_count > 1);
         }
         contents
+    }
+
+    /// Takes in what a further part of the same file holds.
+    pub(super) fn add(&mut self, other: &CityContents) {
+        self.objects += other.objects;
+        self.parts += other.parts;
+        self.holes += other.holes;
+        for (lod, counts) in &other.polygons {
+            self.polygons.entry(*lod).or_default().add_all(counts);
+        }
     }
 
     /// Of a format without levels and kinds.

@@ -3,7 +3,9 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::CityChange;
 use crate::format::SurfaceError;
+use crate::format::city_index::IndexFault;
 use crate::format::cityjson::CityJsonError;
 use crate::format::escaped;
 use crate::format::gltf::GltfError;
@@ -50,6 +52,18 @@ pub enum CityError {
     OutOfReach { path: PathBuf, vertex: usize, position: [f64; 3], limit: f64 },
     #[error("more than 4 billion vertices or triangles; split the model ({})", path.display())]
     TooLarge { path: PathBuf },
+    #[error("{fault}; make it again with `cityweld index` ({})", path.display())]
+    Index { path: PathBuf, fault: IndexFault },
+    #[error(
+        "the city has changed since its index was made: {change}; make it again with `cityweld index` ({})",
+        path.display()
+    )]
+    IndexOfOther { path: PathBuf, change: CityChange },
+    #[error(
+        "an index of a city is the whole city, read as it was when the index was made; give {found} to `cityweld index` ({})",
+        path.display()
+    )]
+    IndexNotAlone { path: PathBuf, found: &'static str },
     #[error(
         "polygon {polygon} of object {object} has a corner at {}; expected finite coordinates in metres",
         place(corner)

@@ -1,6 +1,6 @@
 //! From the coordinates of city files to metres, x east, y north, z up: one decision for all files of a city.
 
-use super::axes::{AxisOrder, AxisVotes, vote};
+use super::axes::{AxisOrder, AxisVotes, ShellSigns, vote};
 use super::degrees::LocalProjection;
 use super::warning::CityDefect;
 use super::{CityOptions, Crs};
@@ -27,10 +27,21 @@ impl Frame {
         let crs = said.or(options.crs.as_deref()).map(Crs::understood);
         let mut frame = Frame { crs, ..Frame::default() };
         frame.compare_systems(files, options);
-        let Some(extent) = Extent::of(files) else { return frame };
-        let votes = vote(files, frame.crs.as_ref(), extent.middle());
+        frame.decided(&FrameEvidence::of(files))
+    }
+
+    /// Decides for one file of which `beginning` says the system, by what was seen of all of it.
+    pub fn of_evidence(beginning: &SurfaceFile, evidence: &FrameEvidence, options: &CityOptions) -> Frame {
+        let frame = Frame::of(&[&SurfaceFile { crs: beginning.crs.clone(), ..SurfaceFile::default() }], options);
+        frame.decided(evidence)
+    }
+
+    fn decided(self, evidence: &FrameEvidence) -> Frame {
+        let mut frame = self;
+        let Some(extent) = &evidence.extent else { return frame };
+        let votes = vote(&evidence.shells, frame.crs.as_ref(), extent.middle());
         if extent.is_degrees(frame.crs.as_ref()) {
-            frame.project(&extent, &votes);
+            frame.project(extent, &votes);
         } else if votes.order() == Some(AxisOrder::NorthFirst) {
             frame.is_north_first = true;
             let (negative, of) = (votes.negative as u64, votes.shells as u64);
@@ -78,7 +89,30 @@ fn is_same(one: &Crs, other: &Crs) -> bool {
     if one.epsg.is_some() { one.epsg == other.epsg } else { other.epsg.is_none() && one.text == other.text }
 }
 
+/// What coordinates tell of their frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FrameEvidence {
+    extent: Option<Extent>,
+    shells: ShellSigns,
+}
+
+impl FrameEvidence {
+    pub fn of(files: &[&SurfaceFile]) -> FrameEvidence {
+        FrameEvidence { extent: Extent::of(files), shells: ShellSigns::of(files) }
+    }
+
+    /// Takes in what another part of the same files tells.
+    pub fn add(&mut self, other: &FrameEvidence) {
+        self.extent = match (self.extent.take(), &other.extent) {
+            (Some(own), Some(other)) => Some(own.with(other)),
+            (own, other) => own.or_else(|| other.clone()),
+        };
+        self.shells.add(&other.shells);
+    }
+}
+
 /// Lowest and highest coordinates that polygons use.
+#[derive(Clone, Debug)]
 struct Extent {
     low: [f64; 3],
     high: [f64; 3],
@@ -96,6 +130,13 @@ impl Extent {
             }
         }
         Some(extent).filter(|extent| extent.low[0].is_finite())
+    }
+
+    fn with(&self, other: &Extent) -> Extent {
+        Extent {
+            low: [0, 1, 2].map(|axis| self.low[axis].min(other.low[axis])),
+            high: [0, 1, 2].map(|axis| self.high[axis].max(other.high[axis])),
+        }
     }
 
     fn middle(&self) -> [f64; 2] {

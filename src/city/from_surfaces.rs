@@ -71,7 +71,7 @@ impl Source {
 }
 
 /// The building that a part of a part belongs to.
-fn root_of(objects: &[ObjectRecord], object: usize) -> usize {
+pub(super) fn root_of(objects: &[ObjectRecord], object: usize) -> usize {
     let mut root = object;
     while let Some(parent) = objects[root].parent {
         root = parent as usize;
@@ -82,7 +82,7 @@ fn root_of(objects: &[ObjectRecord], object: usize) -> usize {
 fn warnings(path: &Path, file: &SurfaceFile, chosen: &Chosen) -> Vec<CityWarning> {
     let place = |object: &str| CityPlace { path: path.to_owned(), line: None, object: object.to_owned() };
     let skipped = file.skipped.iter().map(|skipped| CityWarning {
-        defect: CityDefect::PassedOver { what: skipped.what },
+        defect: CityDefect::PassedOver { what: skipped.what.into() },
         count: skipped.count as u64,
         example: place(&skipped.example),
     });

@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use super::warning::CityWarning;
 use super::{CityContents, Crs};
 use crate::format::surfaces::SurfaceKind;
@@ -34,6 +36,33 @@ pub struct CityModel {
     pub crs: Option<Crs>,
     /// What the files had wrong and was tolerated, one entry a kind.
     pub warnings: Vec<CityWarning>,
+    /// Of each triangle whether somebody could have seen it, where an index of the city knows; else empty.
+    pub exposed: Vec<bool>,
+    /// What the whole city has, where this is a part that was read out of an index.
+    pub part_of: Option<WholeCity>,
+}
+
+/// What the whole has of which a model is a part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WholeCity {
+    pub size: CitySize,
+    /// The smallest box around all vertices, local coordinates.
+    pub low: Point3<f64>,
+    pub high: Point3<f64>,
+}
+
+/// How much a model has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct CitySize {
+    pub objects: usize,
+    pub facets: usize,
+    pub triangles: usize,
+}
+
+impl CitySize {
+    pub fn of(model: &CityModel) -> CitySize {
+        CitySize { objects: model.objects.len(), facets: model.facets.len(), triangles: model.triangles.len() }
+    }
 }
 
 /// One polygon of the model, or one triangle where the file has only triangles.
@@ -70,7 +99,7 @@ pub struct CitySource {
 }
 
 /// What a file is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum CityRole {
     City,
     /// A surface that is open by its nature.
@@ -85,10 +114,19 @@ impl Facet {
 }
 
 impl CityModel {
-    /// The smallest box around all vertices, local coordinates; `None` without any.
+    /// The smallest box around all vertices, local coordinates; `None` without any. Of a part, that of the whole: what may be sought where
+    /// is the same for both.
     pub fn bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
+        if let Some(whole) = &self.part_of {
+            return Some((whole.low, whole.high));
+        }
         let first = *self.vertices.first()?;
         Some(self.vertices.iter().fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex))))
+    }
+
+    /// How much the whole city has, of which this may be a part.
+    pub fn whole_size(&self) -> CitySize {
+        self.part_of.map_or_else(|| CitySize::of(self), |whole| whole.size)
     }
 
     /// Puts what concerns the city as a whole before what its files had wrong.

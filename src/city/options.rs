@@ -1,5 +1,7 @@
 //! How city files are to be taken.
 
+use serde::{Deserialize, Serialize};
+
 use super::levels::CityLod;
 use crate::format::footprints::FootprintFields;
 
@@ -57,7 +59,7 @@ impl CityOptions {
 }
 
 /// The axis that points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum CityUp {
     #[default]
     Z,
@@ -66,7 +68,7 @@ pub enum CityUp {
 }
 
 /// What coordinates are in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum CityUnit {
     #[default]
     Metre,

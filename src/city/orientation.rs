@@ -40,8 +40,9 @@ pub(super) fn turn_outward(
     model: &mut CityModel,
     source: &CitySource,
     warnings: &mut Warnings,
+    sense: FileSense,
     place_of: impl Fn(u32) -> CityPlace,
-) {
+) -> ToldArea {
     if source.role == CityRole::Terrain
         && let Some(looks_down) = looks_down(&model.facets[source.facets.start as usize..source.facets.end as usize])
     {
@@ -49,11 +50,12 @@ pub(super) fn turn_outward(
             source.facets.clone().for_each(|facet| turn(model, facet));
             warnings.add(CityDefect::TerrainLooksDown, 1, || place_of(source.facets.start));
         }
-        return;
+        return ToldArea::default();
     }
     let objects = facets_by_object(model, source.objects.clone(), source.facets.clone());
     let mut turned = inward(model, &objects, source);
-    if turned.mostly {
+    let area_told = turned.area;
+    if sense.turns_all(&turned.area) {
         // What nothing tells was wound as the rest was: turn all, and judge it as any other file.
         source.facets.clone().for_each(|facet| turn(model, facet));
         let still = inward(model, &objects, source);
@@ -71,12 +73,51 @@ pub(super) fn turn_outward(
     let (of, facets) = (objects.len() as u64, part.iter().map(|(_, turned)| turned.len() as u64).sum());
     warnings.add(CityDefect::InsideOut { of }, whole.len() as u64, || place_of(whole[0].1[0]));
     warnings.add(CityDefect::WoundAgainstTheRest { facets }, part.len() as u64, || place_of(part[0].1[0]));
+    area_told
 }
 
-/// The facets of each object that look inward, ascending, and whether most of what tells its side does.
+/// Whether a file is turned as a whole before its objects are judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FileSense {
+    /// Where most of it that tells its side looks inward.
+    Ask,
+    /// It was asked before, of the whole of which this is a part.
+    Known { turned: bool },
+}
+
+impl FileSense {
+    fn turns_all(self, area: &ToldArea) -> bool {
+        match self {
+            FileSense::Ask => area.is_mostly_inward(),
+            FileSense::Known { turned } => turned,
+        }
+    }
+}
+
+/// Area of a file, of what of it tells its side, and of what of this looks inward; square metres.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ToldArea {
+    all_m2: f64,
+    told_m2: f64,
+    inward_m2: f64,
+}
+
+impl ToldArea {
+    pub fn add(&mut self, other: &ToldArea) {
+        self.all_m2 += other.all_m2;
+        self.told_m2 += other.told_m2;
+        self.inward_m2 += other.inward_m2;
+    }
+
+    pub fn is_mostly_inward(&self) -> bool {
+        self.inward_m2 > self.told_m2 / 2.0 && self.told_m2 > TELLING_SHARE * self.all_m2
+    }
+}
+
+/// The facets of each object that look inward, ascending, and how much of the file tells it.
 struct Inward {
     facets: Vec<Vec<u32>>,
-    mostly: bool,
+    area: ToldArea,
 }
 
 fn inward(model: &CityModel, objects: &[Vec<u32>], source: &CitySource) -> Inward {
@@ -89,7 +130,7 @@ fn inward(model: &CityModel, objects: &[Vec<u32>], source: &CitySource) -> Inwar
     }
     let all_m2: f64 = objects.iter().map(|facets| area(model, facets)).sum();
     let facets = judged.into_iter().flatten().map(|object| object.inward).collect();
-    Inward { facets, mostly: turned_m2 > told_m2 / 2.0 && told_m2 > TELLING_SHARE * all_m2 }
+    Inward { facets, area: ToldArea { all_m2, told_m2, inward_m2: turned_m2 } }
 }
 
 /// The facet seen from its other side.

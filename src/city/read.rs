@@ -7,13 +7,13 @@ use super::build::build;
 use super::files::{CityFiles, open};
 use super::frame::Frame;
 use super::levels::choose;
-use super::recognise::{Format, recognise};
+use super::recognise::{Format, is_index_at, recognise};
 use super::source::Source;
 use super::tiles::{keep_filled, shared_names};
 use super::units::guess;
 use super::upright::odd_up;
 use super::warning::{CityDefect, CityPlace, CityWarning};
-use super::{CityContents, CityError, CityModel, CityOptions, CityRole, CityUnit, CityUp};
+use super::{CityContents, CityError, CityIndex, CityModel, CityOptions, CityRole, CityUnit, CityUp, PlanBox};
 use crate::format::citygml::{is_citygml, read_citygml};
 use crate::format::cityjson::read_cityjson;
 use crate::format::file::open_regular;
@@ -29,8 +29,36 @@ pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Res
     read_city_files(&[city.to_owned()], terrain, options)
 }
 
+/// As [`read_city`]; of a city that is an index, only the blocks that a box of plan touches.
+pub fn read_city_within(
+    city: &Path,
+    terrain: &[PathBuf],
+    options: &CityOptions,
+    within: &PlanBox,
+) -> Result<CityModel, CityError> {
+    match index_of(&[city.to_owned()], terrain, options)? {
+        Some(index) => index.read_within(within),
+        None => read_city(city, terrain, options),
+    }
+}
+
+/// The index that is given as the city; whatever else is given with it was to be told when it was made.
+fn index_of(city: &[PathBuf], terrain: &[PathBuf], options: &CityOptions) -> Result<Option<CityIndex>, CityError> {
+    let Some(index) = city.iter().find(|path| is_index_at(path)) else { return Ok(None) };
+    let found = match () {
+        () if city.len() > 1 => "the other files",
+        () if !terrain.is_empty() => "the terrain",
+        () if *options != CityOptions::default() => "the options of the city",
+        () => return CityIndex::open(index).map(Some),
+    };
+    Err(CityError::IndexNotAlone { path: index.clone(), found })
+}
+
 /// As [`read_city`], of several files or folders that are one city.
 pub fn read_city_files(city: &[PathBuf], terrain: &[PathBuf], options: &CityOptions) -> Result<CityModel, CityError> {
+    if let Some(index) = index_of(city, terrain, options)? {
+        return index.read_all();
+    }
     let mut parsed = Vec::new();
     let mut warnings = Vec::new();
     for (paths, role) in [(city, CityRole::City), (terrain, CityRole::Terrain)] {
@@ -49,6 +77,9 @@ pub fn read_city_files(city: &[PathBuf], terrain: &[PathBuf], options: &CityOpti
 
 /// What each file of a city holds, by its path, whether or not anything in it can be aligned with.
 pub fn read_city_contents(city: &[PathBuf], options: &CityOptions) -> Result<Vec<(PathBuf, CityContents)>, CityError> {
+    if let Some(index) = index_of(city, &[], options)? {
+        return Ok(index.contents());
+    }
     let mut contents = Vec::new();
     for path in city {
         let before = contents.len();

@@ -1,5 +1,6 @@
 //! Which format a file is in: by its content first, by its name second.
 
+use std::io::Read;
 use std::path::Path;
 
 use serde::Deserialize;
@@ -7,6 +8,8 @@ use serde::de::IgnoredAny;
 
 use super::CityError;
 use super::foreign::foreign_format;
+use crate::format::city_index::is_city_index;
+use crate::format::file::open_regular;
 use crate::format::footprints::{is_geopackage, is_shapefile};
 use crate::format::gltf::is_glb;
 use crate::format::meshes::{is_ply_mesh, is_stl};
@@ -38,11 +41,24 @@ const LOOKED_AT: usize = 1 << 16;
 /// Words that begin the lines of an OBJ file.
 const OBJ_WORDS: [&str; 13] = ["v", "vn", "vt", "vp", "f", "fo", "o", "g", "s", "l", "p", "mtllib", "usemtl"];
 
+/// Whether the file is an index of a city, by its first bytes.
+pub fn is_index_at(path: &Path) -> bool {
+    let mut start = Vec::new();
+    let read = open_regular(path).and_then(|file| file.take(MAGIC_BYTES).read_to_end(&mut start));
+    read.is_ok() && is_city_index(&start)
+}
+
+/// Bytes that tell an index.
+const MAGIC_BYTES: u64 = 8;
+
 /// Tells the format, or what the file seems to be instead.
 pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> {
     let other = |(found, remedy)| Err(CityError::OtherFormat { path: path.to_owned(), found, remedy });
     if bytes.is_empty() {
         return other(("the file is empty", "write it again"));
+    }
+    if is_city_index(bytes) {
+        return other(("this is an index of a whole city", "give it alone, as CITY"));
     }
     let by_mark: [(Recogniser, Format); 6] = [
         (is_glb, Format::Gltf),

@@ -10,7 +10,8 @@ use crate::format::obj::{ObjFile, ObjGroup, ObjObject, write_obj};
 impl CityModel {
     /// The facets that are kept, with what they use, counted anew; same origin, no warnings.
     pub fn subset(&self, keep: impl Fn(FacetId) -> bool) -> CityModel {
-        let mut kept = CityModel { origin: self.origin, crs: self.crs.clone(), ..CityModel::default() };
+        let (crs, part_of) = (self.crs.clone(), self.part_of);
+        let mut kept = CityModel { origin: self.origin, crs, part_of, ..CityModel::default() };
         let mut vertex_of = vec![None; self.vertices.len()];
         let mut object_of = vec![None; self.objects.len()];
         // What is kept before each facet, to count the files' shares anew.
@@ -50,6 +51,8 @@ impl CityModel {
         let start = kept.triangles.len() as u32;
         let triangles = &self.triangles[facet.triangles.start as usize..facet.triangles.end as usize];
         kept.triangles.extend(triangles.iter().map(|triangle| triangle.map(&mut moved)));
+        let exposed = self.exposed.get(facet.triangles.start as usize..facet.triangles.end as usize);
+        kept.exposed.extend_from_slice(exposed.unwrap_or_default());
         let triangles = start..kept.triangles.len() as u32;
         kept.facets.push(Facet { outline, holes, object, triangles, ..facet.clone() });
     }

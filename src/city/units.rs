@@ -36,6 +36,21 @@ pub(super) fn guess(sources: &[Source]) -> Option<UnitGuess> {
     let houses: Vec<(f64, f64)> = city.iter().flat_map(|source| houses_of(source)).collect();
     let is_of_houses = houses.len() >= FEW_OBJECTS;
     let heights = if is_of_houses { houses } else { city.iter().flat_map(|source| walls_of(source)).collect() };
+    guessed(heights, is_of_houses)
+}
+
+/// The same by the heights of objects, where these are many.
+pub(super) fn guess_by_houses(heights: Vec<f64>) -> Option<UnitGuess> {
+    let is_of_houses = heights.len() >= FEW_OBJECTS;
+    guessed(heights.into_iter().map(|height| (height, 1.0)).collect(), is_of_houses)
+}
+
+/// Height of each object of a file that has one.
+pub(super) fn heights_of_houses(source: &Source) -> Vec<f64> {
+    houses_of(source).into_iter().map(|(height, _)| height).collect()
+}
+
+fn guessed(heights: Vec<(f64, f64)>, is_of_houses: bool) -> Option<UnitGuess> {
     let height = weighted_median(heights)?;
     if height > HOUSE_M.1 {
         let fits = |unit: &CityUnit| {

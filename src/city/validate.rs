@@ -168,9 +168,8 @@ pub(super) fn check_extents(model: &CityModel, warnings: &mut Warnings) {
     };
     let place = |source: &CitySource| CityPlace { path: source.path.clone(), line: None, object: String::new() };
     let Some(city) = city_without(usize::MAX) else { return };
-    if !(SMALLEST_CITY_M..=LARGEST_CITY_M).contains(&city.across_m()) {
-        let across_m = city.across_m();
-        warnings.add(CityDefect::OddExtent { across_m }, 1, || place(&model.sources[0]));
+    if let Some(defect) = odd_extent(city.across_m()) {
+        warnings.add(defect, 1, || place(&model.sources[0]));
     }
     for (at, source) in model.sources.iter().enumerate().skip(1) {
         let (Some(own), Some(city)) = (boxes[at], city_without(at)) else { continue };
@@ -180,6 +179,11 @@ pub(super) fn check_extents(model: &CityModel, warnings: &mut Warnings) {
             warnings.add(CityDefect::FarApart { distance_m }, 1, || place(source));
         }
     }
+}
+
+/// What is told of a city that is so wide.
+pub(super) fn odd_extent(across_m: f64) -> Option<CityDefect> {
+    (!(SMALLEST_CITY_M..=LARGEST_CITY_M).contains(&across_m)).then_some(CityDefect::OddExtent { across_m })
 }
 
 #[derive(Clone, Copy)]

@@ -1,14 +1,17 @@
 //! What a city file has wrong and the model tolerates.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::mem::discriminant;
 use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
 
 use super::{CityUnit, CityUp};
 use crate::format::escaped;
 
 /// A kind of defect that was tolerated: how often it was met, and where first.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct CityWarning {
     pub defect: CityDefect,
     /// Of what the defect is about: vertices, faces, lines, objects.
@@ -17,8 +20,9 @@ pub struct CityWarning {
 }
 
 /// Where an oddity was first met.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct CityPlace {
+    #[serde(serialize_with = "as_text")]
     pub path: PathBuf,
     /// Counted from 1; `None` in files without lines.
     pub line: Option<u32>,
@@ -27,7 +31,7 @@ pub struct CityPlace {
 }
 
 /// What was wrong, and what was done about it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub enum CityDefect {
     /// Lines that begin with a word OBJ does not know; passed over.
     UnknownLines,
@@ -66,13 +70,15 @@ pub enum CityDefect {
     /// Objects with edges that only one facet has.
     OpenShell { open_edges: u64, edges: u64 },
     /// What a reader of a format passed over, in words.
-    PassedOver { what: &'static str },
+    PassedOver { what: Cow<'static, str> },
     /// Footprints (level of detail 0) of objects that have nothing else; left out.
     Footprints,
     /// Polygons of objects that have nothing up to the level of detail that was asked for; left out.
     AboveWantedLevel,
     /// Files of a folder that are no city models; passed over.
     NoCityFile,
+    /// Files of a city that were not found where its index was opened, so that nothing tells whether they are still the same.
+    IndexAlone,
     /// Files of the city without polygons; left out.
     EmptyTile,
     /// Objects with the name of one in another file of the city; both kept.
@@ -152,9 +158,21 @@ impl Warnings {
         }
     }
 
+    /// Takes in warnings that were counted elsewhere.
+    pub fn add_all(&mut self, warnings: impl IntoIterator<Item = CityWarning>) {
+        for CityWarning { defect, count, example } in warnings {
+            self.add(defect, count, || example);
+        }
+    }
+
     pub fn into_list(self) -> Vec<CityWarning> {
         self.0
     }
+}
+
+/// A path that is to be shown; names that are no UTF-8 as near as text comes to them.
+pub(super) fn as_text<S: serde::Serializer>(path: &std::path::Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
 }
 
 impl fmt::Display for CityPlace {

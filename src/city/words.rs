@@ -28,8 +28,8 @@ impl fmt::Display for CityWarning {
 
 impl CityWarning {
     /// What is counted, of one and of many.
-    fn counted(&self) -> (&'static str, &'static str) {
-        match self.defect {
+    fn counted(&self) -> (&str, &str) {
+        match &self.defect {
             CityDefect::UnknownLines => ("line begins with an unknown word", "lines begin with an unknown word"),
             CityDefect::FreeForms => ("curve or surface has no polygons", "curves or surfaces have no polygons"),
             CityDefect::NoSurface => ("primitive is points or lines", "primitives are points or lines"),
@@ -65,6 +65,9 @@ impl CityWarning {
                 "polygons are of higher levels of detail than --lod",
             ),
             CityDefect::NoCityFile => ("file of the folder is no city model", "files of the folder are no city models"),
+            CityDefect::IndexAlone => {
+                ("file of the city is not where it was", "files of the city are not where they were")
+            }
             CityDefect::EmptyTile => ("file of the city has no polygons", "files of the city have no polygons"),
             CityDefect::SameObject => {
                 ("object has the name of one in another file", "objects have the names of ones in other files")
@@ -104,6 +107,9 @@ impl CityWarning {
             }
             CityDefect::PassedOver { .. } | CityDefect::NoCityFile | CityDefect::EmptyTile => {
                 write!(f, ", passed over")?
+            }
+            CityDefect::IndexAlone => {
+                write!(f, "; the index is taken, though nothing tells whether they have changed")?
             }
             CityDefect::SameObject => write!(f, " of the city (tiles that overlap?), both kept")?,
             CityDefect::Footprints => write!(f, " that has nothing above level of detail 0, left out")?,

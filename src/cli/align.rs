@@ -1,7 +1,6 @@
 //! `cityweld align`
 
 use crate::Place;
-use crate::city::read_city;
 use crate::export::{
     CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, start_report, write_alignment,
 };
@@ -80,16 +79,25 @@ fn tell_start(inputs: &Inputs, plan: &AlignPlan, session: &Session) -> Result<Ou
     Ok(Outcome::Good)
 }
 
+fn read_sfm(plan: &AlignPlan, session: &Session) -> Result<Reconstruction> {
+    let voice = &session.voice;
+    voice.bar.show("reading the reconstruction", 0, 0);
+    let sfm = read_reconstruction(&plan.sfm)?;
+    voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
+    Ok(sfm)
+}
+
 impl Inputs {
     fn read(plan: &AlignPlan, session: &Session) -> Result<Inputs> {
         let voice = &session.voice;
+        // Of an index only what the start can reach is read, so the start comes first.
+        let early = plan.city.is_index().then(|| read_sfm(plan, session)).transpose()?;
+        let within = early.as_ref().and_then(|sfm| plan.place.surroundings(sfm, plan.fixed_scale()));
         voice.bar.show("reading the city", 0, 0);
-        let city = read_city(&plan.city.city, &plan.city.terrain, &plan.city.options)?;
+        let city = plan.city.read(within.as_ref())?;
         voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));
         let prior = plan.place.prior(&city)?;
-        voice.bar.show("reading the reconstruction", 0, 0);
-        let sfm = read_reconstruction(&plan.sfm)?;
-        voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
+        let sfm = early.map_or_else(|| read_sfm(plan, session), Ok)?;
         let start = match plan.place.estimate(&sfm, &city)? {
             Some(estimate) => {
                 let distance_m = estimate.distance_to_city(&sfm.points, &city).inspect_err(|_| {

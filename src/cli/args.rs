@@ -48,6 +48,7 @@ pub struct Args {
 pub enum Command {
     Align(AlignArgs),
     Merge(MergeArgs),
+    Index(IndexArgs),
     Planes(PlanesArgs),
     Inspect(InspectArgs),
     Export(ExportArgs),
@@ -117,7 +118,7 @@ pub struct Common {
     alignment.json of an earlier run is a start, too: by its transform, or else its best_candidate.\n\n\
     Exit status: 0 aligned; 1 any other verdict (alignment.json says why).")]
 pub struct AlignArgs {
-    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), or a folder of tiles
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index (.cwi)
     pub city: PathBuf,
     /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
     pub sfm: PathBuf,
@@ -216,11 +217,32 @@ pub struct MergeArgs {
     pub city_options: CityArgs,
 }
 
+/// Prepare a city once: an index that is read in its place, as a whole or the part that a job touches
+///
+/// Writes one file (.cwi): the model in blocks of 250 m, what can be seen of each, its walls. It is given as CITY wherever one is asked
+/// for; with a start or --near only the blocks in reach are read. What says how CITY is to be read (--terrain, --lod, ...) is said here and
+/// not again. An index whose city has changed is refused.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  \
+    cityweld index city.city.jsonl -o city.cwi\n  \
+    cityweld index tiles/ --terrain ground.obj -o city.cwi\n  \
+    cityweld align city.cwi sfm/ --near 85120,447250,300 -o out")]
+pub struct IndexArgs {
+    /// City model, as CITY of `align`; several files or folders are one city
+    #[arg(value_name = "CITY", num_args = 1.., required = true)]
+    pub city: Vec<PathBuf>,
+    /// File to write, .cwi by custom; must not exist (see --force)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub city_options: CityArgs,
+}
+
 /// Show what the program sees in a city model: counts, extent, planes, warnings
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Example:\n  cityweld planes city.obj --terrain ground.obj -o planes.glb")]
 pub struct PlanesArgs {
-    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), or a folder of tiles
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index (.cwi)
     pub city: PathBuf,
     /// File to write: .glb (coloured by plane) or .json
     #[arg(short, long, value_name = "FILE")]
@@ -267,7 +289,7 @@ pub struct ManArgs {
     after_help = "Example:\n  cityweld export city.obj sfm/ --alignment out/alignment.json --format glb,ply -o again"
 )]
 pub struct ExportArgs {
-    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), or a folder of tiles
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index (.cwi)
     pub city: PathBuf,
     /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
     pub sfm: PathBuf,

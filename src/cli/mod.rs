@@ -5,6 +5,7 @@ mod args;
 mod completions;
 mod demo;
 mod export;
+mod index;
 mod inspect;
 mod interrupt;
 mod merge;

@@ -7,12 +7,13 @@ use anyhow::Result;
 use super::args::{AlignArgs, MergeArgs, Near};
 use super::plan::file_name;
 use crate::Place;
-use crate::city::CityModel;
+use crate::city::{CityModel, PlanBox};
 use crate::format::control::{ControlFile, read_control_points};
 use crate::format::positions::{Frame, PositionsFile, read_positions};
 use crate::format::read_start;
 use crate::geometry::Start;
 use crate::georeference::{Estimate, GeoreferenceError, agreed, from_control_points, from_geographic, from_positions};
+use crate::limits::Limits;
 use crate::place_search::{Disc, PlacePrior};
 use crate::reconstruction::Reconstruction;
 
@@ -62,6 +63,23 @@ impl PlaceSources {
             }
         };
         Ok(PlacePrior { near, ..PlacePrior::default() })
+    }
+
+    /// What of the city matters, where that is known before it is read; all of it where positions or control points must be set into it first.
+    pub fn surroundings(&self, sfm: &Reconstruction, fixed_scale: Option<f64>) -> Option<PlanBox> {
+        match self.near {
+            Some(Near::City(near)) => {
+                let limits = Limits::default();
+                let beyond_m = limits.place_search.most_radius_m + limits.null_poses.least_reach_m;
+                return Some(PlanBox::about(near.center, near.radius_m + beyond_m));
+            }
+            // Degrees have a place only in a city whose system is known.
+            Some(Near::Geographic { .. }) => return None,
+            None => {}
+        }
+        let start = self.start.as_ref().filter(|_| self.positions.is_none() && self.points.is_none())?;
+        let estimate = Estimate::given(start.read, &sfm.points, String::new());
+        Some(estimate.surroundings(&sfm.points, fixed_scale))
     }
 
     /// The start that all sources together give; none where there is no source.

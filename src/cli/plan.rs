@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::city::CityOptions;
+use crate::city::{CityModel, CityOptions, PlanBox, is_index_at, read_city, read_city_within};
 use crate::geometry::Vector3;
 use crate::imagery::SuperpixelSource;
 use crate::{AlignOptions, Place, Up};
@@ -72,6 +72,10 @@ impl AlignPlan {
         })
     }
 
+    pub fn fixed_scale(&self) -> Option<f64> {
+        self.settings.fixed_scale
+    }
+
     /// Everything that `align` takes, from that place on.
     pub fn options(&self, place: Place) -> AlignOptions {
         let Settings { fixed_scale, up, accuracy_m, seed, false_alarm } = self.settings;
@@ -101,6 +105,19 @@ impl CityFiles {
             ensure!(!same(path, city), "the city is given again as terrain, leave one out: {}", path.display());
         }
         Ok(CityFiles { city: city.into(), terrain: args.terrain.clone(), options: args.options() })
+    }
+
+    /// Whether a part of the city can be read by itself.
+    pub fn is_index(&self) -> bool {
+        is_index_at(&self.city)
+    }
+
+    /// Reads the city; where it is an index, only what matters of it.
+    pub fn read(&self, within: Option<&PlanBox>) -> Result<CityModel> {
+        Ok(match within {
+            Some(within) => read_city_within(&self.city, &self.terrain, &self.options, within)?,
+            None => read_city(&self.city, &self.terrain, &self.options)?,
+        })
     }
 
     /// City and terrain, by their names alone.
@@ -174,7 +191,7 @@ fn superpixel_source(args: &AlignArgs, warnings: &mut Vec<String>) -> Result<Opt
 }
 
 /// A file, or a folder of them, whatever is in it; a pipe might never end.
-fn existing_city(path: &Path, what: &str) -> Result<()> {
+pub fn existing_city(path: &Path, what: &str) -> Result<()> {
     let place = path.display();
     let found = std::fs::metadata(path).with_context(|| format!("cannot read {what}: {place}"))?;
     let is_one = found.is_dir() || found.is_file();

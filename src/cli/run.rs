@@ -11,7 +11,7 @@ use super::args::{Args, Command};
 use super::interrupt::{self, Interrupt};
 use super::print::{self, Voice};
 use super::session::{Outcome, Session};
-use super::{align, completions, demo, export, inspect, merge, planes, solve};
+use super::{align, completions, demo, export, index, inspect, merge, planes, solve};
 use crate::format::escaped;
 
 /// Bad input or use, or a place that cannot be written.
@@ -76,6 +76,7 @@ fn dispatch(command: &Command, session: &Session) -> anyhow::Result<Outcome> {
     match command {
         Command::Align(args) => align::run(args, session),
         Command::Merge(args) => merge::run(args, session),
+        Command::Index(args) => index::run(args, session),
         Command::Planes(args) => planes::run(args, session),
         Command::Inspect(args) => inspect::run(args, session),
         Command::Completions(args) => completions::completions(args, session),

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
-use crate::city::{CityContents, CityModel};
+use crate::city::{CityContents, CityModel, IndexOverview};
 use crate::export::PlaneAttitude;
 use crate::format::escaped;
 use crate::georeference::Estimate;
@@ -68,6 +68,19 @@ pub fn of_alignment(alignment: &Alignment, output: &Path, files: &[&str], second
         table.row(name, format!("{} (weight {:.3})", other.differs, other.weight));
     }
     table.row("written", format!("{} ({})", output.display(), files.join(", ")));
+    table.row("time", format!("{seconds:.1} s"));
+    table.text
+}
+
+/// What an index holds.
+pub fn of_index(index: &IndexOverview, names: &[String], written: &Path, seconds: f64) -> String {
+    let mut table = Table::new(&format!("index of {}", names.join(", ")), 13);
+    table.row("objects", index.objects);
+    table.row("facets", format!("{} ({} triangles)", index.facets, index.triangles));
+    table.row("walls", format!("{} stretches that can be seen", index.walls));
+    let ([west, south], [east, north]) = (index.low, index.high);
+    table.row("plan", format!("{west:.0}, {south:.0} to {east:.0}, {north:.0}, in {} blocks", index.blocks));
+    table.row("written", written.display());
     table.row("time", format!("{seconds:.1} s"));
     table.text
 }

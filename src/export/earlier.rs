@@ -13,6 +13,7 @@ use serde::Deserialize;
 use super::folder::{COLMAP_FOLDER, POINTS_FILE, REPORT_FILE, SCENE_FILE};
 use super::merge_report::MERGE_REPORT_FILE;
 use super::ply::REMARK;
+use crate::format::city_index::is_city_index;
 use crate::format::{JsonKind, LARGEST_TEXT_BYTES, read_text};
 
 /// A file that a command unpacks beside its results: its path in the output, parts between slashes, and its content.
@@ -31,7 +32,8 @@ const LARGEST_JSON_BYTES: u64 = 64 << 20;
 pub(super) fn foreign_file(output: &Path, unpacked: &[UnpackedFile]) -> io::Result<Option<PathBuf>> {
     let found = output.symlink_metadata()?;
     if found.is_file() {
-        let is_ours = is_our_glb(output) || json_kind(output) == Some(JsonKind::Planes);
+        let is_index = || start_of(output).is_ok_and(|start| is_city_index(&start));
+        let is_ours = is_our_glb(output) || is_index() || json_kind(output) == Some(JsonKind::Planes);
         return Ok((!is_ours).then(|| output.into()));
     }
     if !found.is_dir() {

@@ -16,7 +16,7 @@ const CITY_COLOR: [f32; 3] = [0.62, 0.62, 0.60];
 
 /// A node with one child an object, so that a viewer tells which building one clicks on; and the number of triangles.
 pub(super) fn city_node(glb: &mut Glb, city: &CityModel, extent: Option<&Extent>) -> (Option<Index<Node>>, usize) {
-    let near = extent.filter(|_| city.triangles.len() > CITY_TRIANGLES);
+    let near = extent.filter(|_| city.whole_size().triangles > CITY_TRIANGLES);
     // Of closed and of open objects; made when first needed, since an unused one draws a remark of the validator.
     let mut materials = [None; 2];
     let mut written = 0;

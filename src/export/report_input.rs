@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::city::{CityModel, Crs};
+use crate::city::{CityModel, CitySize, Crs};
 use crate::georeference::Estimate;
 use crate::reconstruction::Reconstruction;
 
@@ -39,13 +39,9 @@ pub struct SfmCounts {
 
 impl CityCounts {
     pub fn of(city: &CityModel, files: Vec<String>) -> CityCounts {
-        CityCounts {
-            files,
-            crs: city.crs.clone(),
-            objects: city.objects.len(),
-            facets: city.facets.len(),
-            triangles: city.triangles.len(),
-        }
+        // Of the whole city, however much of it was read.
+        let CitySize { objects, facets, triangles } = city.whole_size();
+        CityCounts { files, crs: city.crs.clone(), objects, facets, triangles }
     }
 }
 

@@ -1,11 +1,11 @@
 //! Reference systems as files spell them.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::wkt::{is_wkt, wkt_crs};
 
 /// A reference system: what the file says, and what is understood of it.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Crs {
     /// As the file, or the user, spells it.
     pub text: String,

@@ -13,6 +13,7 @@ mod alignment;
 pub mod crs;
 pub mod cityjson;
 pub mod bundler;
+pub mod city_index;
 pub mod citygml;
 pub mod colmap;
 pub mod e57;

@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// Everything of one file that bounds a city object.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceFile {
@@ -48,7 +50,7 @@ pub struct SurfaceRecord {
 }
 
 /// Level of detail: 2.2 is (2, 2), 2 is (2, 0).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 pub struct Lod(pub u8, pub u8);
 
 impl fmt::Display for Lod {

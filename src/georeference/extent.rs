@@ -17,6 +17,11 @@ pub(super) fn middle(points: &[Point3<f64>]) -> Point3<f64> {
 
 /// Within which most points lie about their middle, sfm units.
 pub(super) fn radius(points: &[Point3<f64>], middle: &Point3<f64>) -> f64 {
+    within_which(points, middle, MOST)
+}
+
+/// Within which a share of the points lies about their middle, sfm units.
+pub(super) fn within_which(points: &[Point3<f64>], middle: &Point3<f64>, share: f64) -> f64 {
     let mut offsets: Vec<f64> = points.iter().map(|p| (p - middle).norm()).collect();
-    quantile(&mut offsets, MOST).unwrap_or(0.0)
+    quantile(&mut offsets, share).unwrap_or(0.0)
 }

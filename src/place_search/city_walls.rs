@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::prior::Disc;
 use crate::geometry::Vector3;
 use crate::limits::Limits;
-use crate::planes::{CityPlane, PreparedCity};
+use crate::planes::{CityPlane, PlaneId, PreparedCity};
 use crate::robust::quantile;
 
 /// A stretch of wall; city frame (local), metres.
@@ -60,14 +60,22 @@ const SLIVER_M: f64 = 0.25;
 
 /// All walls, or those that stand within a disc.
 pub fn city_walls(city: &PreparedCity, within: Option<&Disc>, limits: &Limits) -> Vec<CityWall> {
+    let inside = |plane: &CityPlane| within.is_none_or(|disc| disc.meets_box(&plane.low, &plane.high));
+    walls_of_planes(city, inside, limits).into_iter().flat_map(|(_, walls)| walls).collect()
+}
+
+/// The walls of the planes that are asked for, in the order of the planes.
+pub fn walls_of_planes(
+    city: &PreparedCity,
+    asked: impl Fn(&CityPlane) -> bool + Sync,
+    limits: &Limits,
+) -> Vec<(PlaneId, Vec<CityWall>)> {
     let planes = &city.planes().planes;
-    let of_plane = |plane: &CityPlane| -> Vec<CityWall> {
+    let of_plane = |(id, plane): (u32, &CityPlane)| {
         let upright = plane.plane.normal.z.abs() < limits.upright_sin;
-        let inside = within.is_none_or(|disc| disc.meets_box(&plane.low, &plane.high));
-        if upright && inside { walls_of(city, plane) } else { Vec::new() }
+        (PlaneId(id), if upright && asked(plane) { walls_of(city, plane) } else { Vec::new() })
     };
-    let by_plane: Vec<Vec<CityWall>> = planes.par_iter().map(of_plane).collect();
-    by_plane.into_iter().flatten().collect()
+    (0..planes.len() as u32).into_par_iter().zip(planes).map(of_plane).collect()
 }
 
 /// The height that this share of the city's upright planes does not exceed, metres, seen or not.

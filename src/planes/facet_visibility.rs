@@ -12,7 +12,7 @@ use super::surface::CitySurface;
 use crate::geometry::{Point3, Vector3};
 use crate::limits::FacetVisibilityLimits;
 
-/// For each triangle of a city whether it is exposed, found out when first asked.
+/// For each triangle of a city whether it is exposed, found out when first asked where the model does not tell it.
 pub(super) struct FacetVisibility {
     known: Vec<AtomicU8>,
     limits: FacetVisibilityLimits,
@@ -25,7 +25,19 @@ const EXPOSED: u8 = 2;
 impl FacetVisibility {
     pub fn new(surface: &CitySurface, limits: &FacetVisibilityLimits) -> FacetVisibility {
         let triangles = surface.model.triangles.len();
-        FacetVisibility { known: (0..triangles).map(|_| AtomicU8::new(UNKNOWN)).collect(), limits: *limits }
+        // What an index knows was asked by the usual limits.
+        let is_told = surface.model.exposed.len() == triangles && *limits == FacetVisibilityLimits::default();
+        let told = |triangle: usize| match is_told.then(|| surface.model.exposed[triangle]) {
+            None => UNKNOWN,
+            Some(exposed) => {
+                if exposed {
+                    EXPOSED
+                } else {
+                    HIDDEN
+                }
+            }
+        };
+        FacetVisibility { known: (0..triangles).map(|t| AtomicU8::new(told(t))).collect(), limits: *limits }
     }
 
     /// Whether a triangle is exposed; several threads may ask at once.

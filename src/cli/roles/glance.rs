@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::format::JsonKind;
+use crate::format::city_index::is_city_index;
 use crate::format::colmap::missing_files;
 use crate::format::file::open_regular;
 use crate::format::gltf::is_glb;
@@ -80,6 +81,7 @@ impl Glance {
             path.extension().is_some_and(|is| endings.iter().any(|ending| is.eq_ignore_ascii_case(ending)))
         };
         let is_city = is_glb(&start)
+            || is_city_index(&start)
             || (is_json && json.is_none() && (is_city_json || is_named(&["gltf"])))
             || (!is_json && other_sfm.is_none() && (is_named(&["obj"]) || text.lines().any(is_obj_vertex)));
         let model = model.filter(|_| !is_city);

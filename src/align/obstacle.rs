@@ -54,7 +54,7 @@ pub(super) fn of_inputs(city: &PreparedCity, reconstruction: &Reconstruction, pa
     patches
         .patches
         .is_empty()
-        .then(|| Obstacle::NoPatches { points: reconstruction.points.len(), noise: patches.noise })
+        .then_some(Obstacle::NoPatches { points: reconstruction.points.len(), noise: patches.noise })
 }
 
 /// A start, in the city's local frame, from which no point can reach the city.

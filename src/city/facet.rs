@@ -231,11 +231,10 @@ fn halves([a, b, c, d]: [Point3<f64>; 4], normal: &Vector3<f64>) -> Option<[[usi
 mod tests {
     use super::*;
 
-    fn shaped(
-        vertices: &[[f64; 3]],
-        outline: &[u32],
-        holes: &[&[u32]],
-    ) -> (Vec<Facet>, Vec<(u32, CityDefect)>, Vec<[u32; 3]>) {
+    /// Facets, defects by face, triangles.
+    type Shaped = (Vec<Facet>, Vec<(u32, CityDefect)>, Vec<[u32; 3]>);
+
+    fn shaped(vertices: &[[f64; 3]], outline: &[u32], holes: &[&[u32]]) -> Shaped {
         let vertices: Vec<Point3<f64>> = vertices.iter().map(|&[x, y, z]| Point3::new(x, y, z)).collect();
         let mut shaper = Shaper::new(&vertices, 1e-3, 1);
         let holes = holes.iter().map(|hole| hole.to_vec()).collect();

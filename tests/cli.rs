@@ -174,12 +174,6 @@ fn refuses_starts_that_are_none() {
 }
 
 #[test]
-fn says_that_a_search_without_a_start_is_not_built_yet() {
-    let room = room();
-    Align { start: None, ..Align::sample() }.refused(&room, &["--start"]);
-}
-
-#[test]
 fn refuses_cities_and_reconstructions_that_are_none() {
     let room = room();
     let city = |city: String| Align { city, ..Align::sample() };
@@ -398,7 +392,7 @@ fn says_what_it_is() {
 #[test]
 fn an_option_that_does_not_exist_is_unexpected_and_nothing_else_is_proposed() {
     let room = room();
-    for unknown in ["--nearby", "--foo"] {
+    for unknown in ["--frobnicate", "--foo"] {
         let output = cityweld(&room, &[&Align::sample().args()[..], &[unknown, "100,200,50"]].concat());
         let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");

@@ -58,8 +58,14 @@ impl Parts {
         let mut command = Command::new(env!("CARGO_BIN_EXE_cityweld"));
         command.arg("merge").args([self.room.path().join("a"), self.room.path().join("b")]);
         command.arg("--city").arg(of_sample("city.obj")).args(places);
-        let ended =
-            command.arg("--labels").arg(of_sample("labels")).arg("-o").arg(&out).arg("--quiet").output().unwrap();
+        let ended = command
+            .arg("--labels")
+            .arg(of_sample("labels"))
+            .arg("-o")
+            .arg(&out)
+            .args(["--quiet", "--force"])
+            .output()
+            .unwrap();
         let report = std::fs::read(out.join("merge.json"));
         let report = report.unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&ended.stderr)));
         (ended.status.code(), serde_json::from_slice(&report).unwrap())
@@ -97,11 +103,14 @@ fn parts_of_which_nothing_is_known_are_searched_in_the_city() {
 #[test]
 fn positions_of_all_photographs_start_every_part() {
     let parts = Parts::new();
+    // The start of the sample is coarse; where the first part was found is not, and its frame is that of the whole.
+    let (_, found) = parts.merged(&[]);
+    let city_from_whole = similarity(&found["parts"][0]["transform"]);
     let lines = sample()
         .images
         .iter()
         .map(|image| {
-            let place = parts.city_from_whole.apply(&image.center());
+            let place = city_from_whole.apply(&image.center());
             format!("{} {} {} {}\n", image.name, place.x, place.y, place.z)
         })
         .collect::<String>();

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use cityweld::types::{ImageIndex, PointIndex};
 use cityweld::{
-    MergeOptions, MergePart, Reconstruction, Rotation3, Similarity, SuperpixelSource, Vector3, merge,
+    MergeOptions, MergePart, Place, Reconstruction, Rotation3, Similarity, SuperpixelSource, Vector3, merge,
     read_reconstruction, write_merge,
 };
 
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sfms = [seen_from(&whole, 0..2), seen_from(&whole, 1..4).transformed(&elsewhere)];
 
     let named = ["west", "east"].into_iter().zip(sfms);
-    let parts = named.map(|(name, sfm)| MergePart { name: name.into(), sfm, start: None }).collect();
+    let parts = named.map(|(name, sfm)| MergePart { name: name.into(), sfm, place: Place::default() }).collect();
 
     // The superpixels of the shared photograph: each is a plane in one part and holds points of the other.
     let labels = SuperpixelSource::Labels(sample.join("labels"));

@@ -80,7 +80,7 @@ pub use format::control::read_control_points;
 pub use format::positions::read_positions;
 pub use format::read_start;
 pub use geometry::{Start, StartSigmas};
-pub use georeference::{Estimate, agreed, from_control_points, from_positions};
+pub use georeference::{Estimate, agreed, from_control_points, from_geographic, from_positions};
 pub use place_search::{Disc, HeadingPrior, PlacePrior};
 pub use planes::PreparedCity;
 pub use reconstruction::{Image, Observation, Reconstruction, read_reconstruction};

@@ -1,7 +1,7 @@
 //! The joining of reconstructions on one page: superpixels of the photographs they share, places in a city, one model.
 //!
 //! Question     how do several reconstructions of one place, as they were read, become one, in a city where there is one?
-//! Input        the parts, each with a start where there is a city; label images or photographs, where there are any
+//! Input        the parts, each with what is known of its place where there is a city; label images or photographs, where there are any
 //! Output       [`Merge`]
 //! Method       photographs that several parts have are cut into superpixels that all of them see alike; each part is
 //!              aligned to the city by
@@ -11,8 +11,8 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::align::{AlignOptions, align};
-use crate::geometry::Start;
+use crate::align::{AlignOptions, Place, align};
+use crate::geometry::Similarity;
 use crate::imagery::{
     ImageryError, ImageryWarning, LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels,
     lift_superpixels_of,
@@ -22,6 +22,7 @@ use crate::merging::{Anchor, JoinOptions, Merge, MergeError, Part, join, unify_n
 use crate::observer::Observer;
 use crate::planes::PreparedCity;
 use crate::reconstruction::{Image, Reconstruction};
+use crate::verdict::Verdict;
 
 /// One of the reconstructions to be joined, as it was read.
 #[derive(Clone, Debug)]
@@ -29,8 +30,8 @@ pub struct MergePart {
     /// Unique among the parts.
     pub name: String,
     pub sfm: Reconstruction,
-    /// Roughly where it stands in the city; without one it has no place there by itself.
-    pub start: Option<Start>,
+    /// What is known of where it stands in the city; not asked where there is none.
+    pub place: Place,
 }
 
 /// What the user may set.
@@ -48,22 +49,26 @@ pub fn merge(
     options: &MergeOptions,
     observer: &dyn Observer,
 ) -> Result<Merge, MergeError> {
-    let (mut parts, starts): (Vec<Part>, Vec<Option<Start>>) = given
+    let (mut parts, places): (Vec<Part>, Vec<Place>) = given
         .into_iter()
-        .map(|MergePart { name, sfm, start }| (Part { name, sfm, superpixels: None, anchor: None }, start))
+        .map(|MergePart { name, sfm, place }| (Part { name, sfm, superpixels: None, anchor: None }, place))
         .unzip();
     let by_name = unify_names(&mut parts)?;
     let nothing_there = match &options.superpixels {
         Some(source) => lift_shared(&mut parts, source, options, observer)?,
         None => None,
     };
+    let mut not_found = Vec::new();
     if let Some(city) = city {
-        for (part, start) in parts.iter_mut().zip(starts) {
-            part.anchor = start.map(|start| anchor(part, &start, city, options, observer)).transpose()?;
+        for (part, place) in parts.iter_mut().zip(places) {
+            match anchor(part, place, city, options, observer)? {
+                Ok(anchor) => part.anchor = Some(anchor),
+                Err(reason) => not_found.push(format!("{}: {reason}", part.name)),
+            }
         }
     }
     let mut merged = join(&parts, &options.join, observer)?;
-    merged.warnings.extend(by_name.into_iter().chain(nothing_there));
+    merged.warnings.extend(by_name.into_iter().chain(nothing_there).chain(not_found));
     Ok(merged)
 }
 
@@ -93,22 +98,28 @@ fn lift_shared(
     }))
 }
 
-/// Where the city puts a part by itself.
+/// Where the city puts a part by itself; or why a part of which nothing was known is not found there: a place that was searched in a whole
+/// city and is not sure to be the only one holds nothing.
 fn anchor(
     part: &Part,
-    start: &Start,
+    place: Place,
     city: &PreparedCity,
     options: &MergeOptions,
     observer: &dyn Observer,
-) -> Result<Anchor, MergeError> {
+) -> Result<Result<Anchor, String>, MergeError> {
     let lift = |source| what_is_there(lift_superpixels(&part.sfm, source, &SuperpixelOptions::default(), observer));
     let superpixels = options.superpixels.as_ref().map(lift).transpose()?.flatten();
     let limits = Limits { verdict: options.join.limits.verdict, ..Limits::default() };
-    let align_options = AlignOptions::new(*start).with_seed(options.join.seed).with_limits(limits);
+    let align_options = AlignOptions::at(place).with_seed(options.join.seed).with_limits(limits);
     let found = align(city, &part.sfm, superpixels.as_ref(), &align_options, observer)?;
-    let anchor = Anchor::of(&found, &part.sfm, *start.city_from_sfm());
+    let fallback = match place {
+        Place::Start(start) => *start.city_from_sfm(),
+        Place::Anywhere(_) => Similarity::identity(),
+    };
+    let anchor = Anchor::of(&found, &part.sfm, fallback);
     observer.detail(&format!("{}: {}", part.name, anchor.reason));
-    Ok(anchor)
+    let is_guess = matches!(place, Place::Anywhere(_)) && matches!(found.verdict, Verdict::Failed | Verdict::Ambiguous);
+    Ok(if is_guess { Err(anchor.reason) } else { Ok(anchor) })
 }
 
 /// A part of whose photographs none is there has nothing to add. That only the shared ones are there is the normal case, and

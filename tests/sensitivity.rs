@@ -112,7 +112,7 @@ numbers! {
     occlusion: occlusion as OcclusionLimits { surroundings_m, camera_slack_m; whole: ; not: }
     null_poses: null_poses as NullPoseLimits {
         least_reach_m, basin_m, basin_rad, basin_log_scale;
-        whole: count, samples, ranking_points, refining_points, heard;
+        whole: count, samples, ranking_points, refining_points, rivals;
         // A bound of time, and a path of narrowing gates.
         not: most_rounds, gates_units
     }

@@ -46,7 +46,7 @@ pub(super) fn evaluated_candidates(
     all
 }
 
-/// Gathers what the verdict reads of the poses that were heard; `given_scale` where the scale was given, `accuracy_m` where one is asked for.
+/// Gathers what the verdict reads of the poses that were compared; `given_scale` where the scale was given, `accuracy_m` where one is asked for.
 pub(super) fn collect(
     refiner: &PoseRefiner,
     evaluation: Option<&CandidateEvaluation>,

@@ -25,6 +25,13 @@ pub enum Place {
     Anywhere(PlacePrior),
 }
 
+impl Default for Place {
+    /// Nothing is known.
+    fn default() -> Place {
+        Place::Anywhere(PlacePrior::default())
+    }
+}
+
 /// What the user may set.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]

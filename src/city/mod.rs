@@ -25,7 +25,6 @@ mod plan_box;
 mod polygons;
 mod read;
 mod recognise;
-mod signed_links;
 mod source;
 mod subset;
 #[cfg(test)]

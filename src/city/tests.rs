@@ -10,7 +10,7 @@ fn source(role: CityRole, text: &str) -> Source {
     Source::from_obj(Path::new("folder/block.obj"), role, read_obj(text.as_bytes()).unwrap())
 }
 
-fn model(text: &str) -> CityModel {
+pub(super) fn model(text: &str) -> CityModel {
     sound(build(vec![source(CityRole::City, text)]).unwrap())
 }
 

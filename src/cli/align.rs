@@ -1,10 +1,12 @@
 //! `cityweld align`
 
+use crate::Place;
 use crate::export::{
     CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, start_report, write_alignment,
 };
 use crate::georeference::Estimate;
 use crate::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
+use crate::place_search::PlacePrior;
 use crate::planes::PreparedCity;
 use crate::reconstruction::{Reconstruction, read_reconstruction};
 use crate::verdict::Verdict;
@@ -28,7 +30,7 @@ pub fn carry_out(plan: &AlignPlan, output: Option<Output>, session: &Session) ->
     let Some((output, place)) = output.zip(plan.output.as_ref()) else {
         return tell_start(&inputs, plan, session);
     };
-    let options = plan.options(inputs.start.as_ref().map(|known| known.estimate.start));
+    let options = plan.options(inputs.place());
     let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &options, &voice.bar)?;
     voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
     alignment.warnings.splice(0..0, inputs.warnings(plan));
@@ -55,6 +57,7 @@ struct Inputs {
     superpixels: Option<LiftedSuperpixels>,
     /// Without one the city is searched.
     start: Option<KnownStart>,
+    prior: PlacePrior,
 }
 
 struct KnownStart {
@@ -88,11 +91,16 @@ impl Inputs {
     fn read(plan: &AlignPlan, session: &Session) -> Result<Inputs> {
         let voice = &session.voice;
         // Of an index only what the start can reach is read, so the start comes first.
-        let early = plan.city.is_index().then(|| read_sfm(plan, session)).transpose()?;
-        let within = early.as_ref().and_then(|sfm| plan.place.surroundings(sfm, plan.fixed_scale()));
+        let frame = plan.city.frame_of_index()?;
+        let early = frame.as_ref().map(|_| read_sfm(plan, session)).transpose()?;
+        let within = match frame.as_ref().zip(early.as_ref()) {
+            Some((frame, sfm)) => plan.place.surroundings(sfm, frame, plan.fixed_scale())?,
+            None => None,
+        };
         voice.bar.show("reading the city", 0, 0);
         let city = plan.city.read(within.as_ref())?;
         voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));
+        let prior = plan.place.prior(&city)?;
         let sfm = early.map_or_else(|| read_sfm(plan, session), Ok)?;
         let start = match plan.place.estimate(&sfm, &city)? {
             Some(estimate) => {
@@ -117,7 +125,11 @@ impl Inputs {
                 Some(lifted)
             }
         };
-        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, start })
+        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, start, prior })
+    }
+
+    fn place(&self) -> Place {
+        self.start.as_ref().map_or(Place::Anywhere(self.prior), |known| Place::Start(known.estimate.start))
     }
 
     /// What was tolerated while reading, once each.

@@ -9,6 +9,8 @@ use std::sync::LazyLock;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
+use crate::place_search::Disc;
+
 pub use city::CityArgs;
 /// The version, the commit where whoever built it named one in CITYWELD_COMMIT (a package has no repository to ask), and the features.
 static VERSION: LazyLock<String> = LazyLock::new(|| {
@@ -135,9 +137,10 @@ pub struct AlignArgs {
     /// a line keeps its point out and has its residual reported
     #[arg(long, value_name = "FILE")]
     pub points: Option<PathBuf>,
-    /// Where the middle of the reconstruction may be, in the city's frame, metres: searched within that radius, with nothing else known
+    /// Where the middle of the reconstruction may be: searched within that radius, with nothing else known. X,Y[,Z],RADIUS in metres of the city; or
+    /// LATITUDE,LONGITUDE,RADIUSm in degrees (WGS 84), the radius in metres with the letter m
     /// [default: without any of --start, --positions, --points, the whole city is searched by the walls of the reconstruction]
-    #[arg(long, value_name = "X,Y[,Z],RADIUS", allow_hyphen_values = true, conflicts_with_all = ["start", "positions", "points"])]
+    #[arg(long, value_name = "PLACE,RADIUS", allow_hyphen_values = true, conflicts_with_all = ["start", "positions", "points"])]
     pub near: Option<Near>,
     /// Read and check everything, tell the start and its distance from the city, write nothing
     #[arg(long)]
@@ -176,6 +179,8 @@ pub struct AlignArgs {
     cityweld merge part_a part_b -o out\n  \
     cityweld merge colmap/sparse -o out\n  \
     cityweld merge part_a part_b part_c --photos photos/ -o out\n  \
+    cityweld merge part_a part_b --city city.obj -o out\n  \
+    cityweld merge part_a part_b --city city.gml --crs EPSG:25832 --positions geo.txt -o out\n  \
     cityweld merge part_a part_b --city city.obj --start a.json --start b.json -o out\n\n\
     Exit status: 0 all parts are merged; 1 any other verdict (merge.json says why).")]
 pub struct MergeArgs {
@@ -195,12 +200,16 @@ pub struct MergeArgs {
     /// superpixels; or those planes alone, to study them
     #[arg(long, value_name = "WHICH", value_enum, default_value_t = EvidenceArg::All)]
     pub evidence: EvidenceArg,
-    /// City model in which the parts meet (as CITY of `align`); needs one --start for every part
+    /// City model in which the parts meet (as CITY of `align`); without --start and --positions each part is searched in the whole of it
     #[arg(long, value_name = "CITY")]
     pub city: Option<PathBuf>,
     /// Coarse place of a part in the city, JSON (see `align --help`), or its alignment.json; once for every part, in their order
     #[arg(long, value_name = "FILE")]
     pub start: Vec<PathBuf>,
+    /// Where the photographs of all parts were taken (as --positions of `align`), matched by name; a part with none of them is searched in
+    /// the whole city [default: --photos, where no --start is given]
+    #[arg(long, value_name = "SOURCE")]
+    pub positions: Option<PathBuf>,
     /// Probability of a wrong place called right that may be taken, of a part in the city as well as between parts; above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
@@ -389,22 +398,33 @@ impl FromStr for Scale {
     }
 }
 
-/// `--near`: a disc in plan, metres of the city.
+/// `--near`: a disc in plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Near {
-    pub center: [f64; 2],
-    pub radius_m: f64,
+pub enum Near {
+    /// In the city's frame, metres.
+    City(Disc),
+    /// About a place on WGS 84.
+    Geographic { latitude_deg: f64, longitude_deg: f64, radius_m: f64 },
 }
 
 impl FromStr for Near {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Near, String> {
-        match numbers(text).as_deref() {
-            Some([x, y, radius_m] | [x, y, _, radius_m]) if *radius_m > 0.0 => {
-                Ok(Near { center: [*x, *y], radius_m: *radius_m })
+        let is_latitude = |degrees: f64| degrees.abs() <= 90.0;
+        let is_longitude = |degrees: f64| degrees.abs() <= 180.0;
+        match (text.strip_suffix('m'), numbers(text.strip_suffix('m').unwrap_or(text)).as_deref()) {
+            (None, Some(&[x, y, radius_m] | &[x, y, _, radius_m])) if radius_m > 0.0 => {
+                Ok(Near::City(Disc { center: [x, y], radius_m }))
             }
-            _ => Err("expected X,Y,RADIUS or X,Y,Z,RADIUS: metres of the city, a radius above 0".into()),
+            (Some(_), Some(&[latitude_deg, longitude_deg, radius_m]))
+                if radius_m > 0.0 && is_latitude(latitude_deg) && is_longitude(longitude_deg) =>
+            {
+                Ok(Near::Geographic { latitude_deg, longitude_deg, radius_m })
+            }
+            _ => Err("expected X,Y,RADIUS or X,Y,Z,RADIUS in metres of the city, or LATITUDE,LONGITUDE,RADIUSm in degrees with the \
+                      letter m behind the radius (51.9,4.48,300m); a radius above 0"
+                .into()),
         }
     }
 }

@@ -2,18 +2,19 @@
 
 use std::path::PathBuf;
 
-use crate::city::read_city;
+use crate::Place;
+use crate::city::{CityModel, read_city};
 use crate::export::{OutputKind, merge_report, write_merge};
-use crate::format::read_start;
 use crate::imagery::SuperpixelSource;
 use crate::merge::{MergeOptions, MergePart, merge};
 use crate::merging::{JoinOptions, Merge, MergeVerdict, PairSources};
 use crate::planes::PreparedCity;
 use crate::reconstruction::read_reconstruction;
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 
 use super::args::{EvidenceArg, MergeArgs};
 use super::parts::parts;
+use super::place::PartPlaces;
 use super::plan::{CityFiles, existing_reconstruction, keeps_inputs};
 use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
@@ -32,7 +33,9 @@ pub fn run(args: &MergeArgs, session: &Session) -> Result<Outcome> {
     join.limits.verdict.false_alarm = args.false_alarm.0;
     let options = MergeOptions { superpixels: superpixel_source(args), join };
     // The parts go before the files are written: a model is as large as they are.
-    let merged = merge(read_parts(args, session)?, city.as_ref(), &options, voice)?;
+    let (parts, warnings) = read_parts(args, city.as_ref().map(|city| &city.model), session)?;
+    let mut merged = merge(parts, city.as_ref(), &options, voice)?;
+    merged.warnings.splice(0..0, warnings);
     voice.detail(&format!("{}: {}", merged.verdict.word(), merged.reason));
 
     voice.bar.show("writing", 0, 0);
@@ -61,6 +64,7 @@ fn check(args: &MergeArgs) -> Result<()> {
     inputs.extend(
         args.city.iter().chain(&args.city_options.terrain).chain(&args.start).chain(&args.labels).chain(&args.photos),
     );
+    inputs.extend(&args.positions);
     keeps_inputs(&args.output, &inputs)?;
     ensure!(
         args.evidence == EvidenceArg::All || superpixel_source(args).is_some(),
@@ -68,13 +72,14 @@ fn check(args: &MergeArgs) -> Result<()> {
     );
     if args.city.is_none() {
         ensure!(args.start.is_empty(), "--start says where the parts are in a city; give the city with --city");
+        ensure!(args.positions.is_none(), "--positions says where the parts are in a city; give the city with --city");
         let option = args.city_options.first_given();
         ensure!(option.is_none(), "{} belongs to a city; give the city with --city", option.unwrap_or_default());
         return Ok(());
     }
     ensure!(
-        args.start.len() == args.parts.len(),
-        "--city needs one --start for every part, in their order: {} parts, {} starts",
+        args.start.is_empty() || args.start.len() == args.parts.len(),
+        "--start is given for every part or for none, in their order: {} parts, {} starts",
         args.parts.len(),
         args.start.len()
     );
@@ -88,6 +93,7 @@ fn paths_with_roles(args: &MergeArgs) -> Vec<Given<'_>> {
     given.extend(args.labels.iter().map(|path| (Role::Labels, path.as_path())));
     given.extend(args.photos.iter().map(|path| (Role::Photos, path.as_path())));
     given.extend(args.start.iter().map(|path| (Role::Start, path.as_path())));
+    given.extend(args.positions.iter().map(|path| (Role::Positions, path.as_path())));
     given
 }
 
@@ -98,16 +104,25 @@ fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<PreparedC
     Ok(Some(PreparedCity::new(read_city(&files.city, &files.terrain, &files.options)?)))
 }
 
-fn read_parts(args: &MergeArgs, session: &Session) -> Result<Vec<MergePart>> {
-    let mut parts = Vec::new();
+/// The parts, and what is to be said of their places.
+fn read_parts(args: &MergeArgs, city: Option<&CityModel>, session: &Session) -> Result<(Vec<MergePart>, Vec<String>)> {
+    let (mut parts, mut warnings) = (Vec::new(), Vec::new());
+    let sources = city.map(|city| PartPlaces::read(args, city)).transpose()?;
     for (index, (path, name)) in args.parts.iter().zip(unique_names(&args.parts)).enumerate() {
         session.voice.bar.show("reading the parts", index, args.parts.len());
         let sfm = read_reconstruction(path)?;
         session.voice.detail(&format!("{name}: {} points, {} images", sfm.points.len(), sfm.images.len()));
-        let start = args.start.get(index).map(|path| read_start(path)).transpose()?;
-        parts.push(MergePart { name, sfm, start });
+        let place = match &sources {
+            None => Place::default(),
+            Some(sources) => {
+                let (place, told) = sources.of_part(index, &sfm).with_context(|| name.clone())?;
+                warnings.extend(told.into_iter().map(|text| format!("{name}: {text}")));
+                place
+            }
+        };
+        parts.push(MergePart { name, sfm, place });
     }
-    Ok(parts)
+    Ok((parts, warnings))
 }
 
 fn superpixel_source(args: &MergeArgs) -> Option<SuperpixelSource> {

@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
-use super::args::{AlignArgs, Near};
+use super::args::{AlignArgs, MergeArgs, Near};
 use super::plan::file_name;
+use crate::Place;
 use crate::city::{CityModel, PlanBox};
 use crate::format::control::{ControlFile, read_control_points};
 use crate::format::positions::{Frame, PositionsFile, read_positions};
 use crate::format::read_start;
 use crate::geometry::Start;
-use crate::georeference::{Estimate, agreed, from_control_points, from_positions};
+use crate::georeference::{Estimate, GeoreferenceError, agreed, from_control_points, from_geographic, from_positions};
 use crate::limits::Limits;
 use crate::place_search::{Disc, PlacePrior};
 use crate::reconstruction::Reconstruction;
@@ -21,7 +22,7 @@ pub struct PlaceSources {
     start: Option<Named<Start>>,
     positions: Option<Named<PositionsFile>>,
     points: Option<Named<ControlFile>>,
-    near: Option<Disc>,
+    near: Option<Near>,
 }
 
 /// Something read, and the name of its file.
@@ -43,7 +44,7 @@ impl PlaceSources {
         let mut positions = args.positions.as_ref().map(named_positions).transpose()?;
         let points =
             args.points.as_ref().map(|path| anyhow::Ok(Named::new(path, read_control_points(path)?))).transpose()?;
-        let near = args.near.map(|Near { center, radius_m }| Disc { center, radius_m });
+        let near = args.near;
         if start.is_none() && positions.is_none() && points.is_none() && near.is_none() {
             // Photographs without GPS say nothing, and are no error.
             positions = args.photos.as_ref().and_then(|photos| named_positions(photos).ok());
@@ -52,25 +53,39 @@ impl PlaceSources {
     }
 
     /// What is known of the place where there is no start: the middle lies there, or anywhere in the city.
-    pub fn prior(&self) -> PlacePrior {
-        PlacePrior { near: self.near, ..PlacePrior::default() }
+    pub fn prior(&self, city: &CityModel) -> Result<PlacePrior> {
+        let near = match self.near {
+            None => None,
+            Some(Near::City(disc)) => Some(disc),
+            Some(Near::Geographic { latitude_deg, longitude_deg, radius_m }) => {
+                let center = from_geographic([latitude_deg, longitude_deg], "--near", frame_of(city).as_ref())?;
+                Some(Disc { center, radius_m })
+            }
+        };
+        Ok(PlacePrior { near, ..PlacePrior::default() })
     }
 
     /// What of the city matters, where that is known before it is read; all of it where positions or control points must be set into it first.
-    pub fn surroundings(&self, sfm: &Reconstruction, fixed_scale: Option<f64>) -> Option<PlanBox> {
-        if let Some(near) = self.near {
+    /// `frame`: the city without anything in it.
+    pub fn surroundings(
+        &self,
+        sfm: &Reconstruction,
+        frame: &CityModel,
+        fixed_scale: Option<f64>,
+    ) -> Result<Option<PlanBox>> {
+        if let Some(near) = self.prior(frame)?.near {
             let limits = Limits::default();
             let beyond_m = limits.place_search.most_radius_m + limits.null_poses.least_reach_m;
-            return Some(PlanBox::about(near.center, near.radius_m + beyond_m));
+            return Ok(Some(PlanBox::about(near.center, near.radius_m + beyond_m)));
         }
-        let start = self.start.as_ref().filter(|_| self.positions.is_none() && self.points.is_none())?;
-        let estimate = Estimate::given(start.read, &sfm.points, String::new());
-        Some(estimate.surroundings(&sfm.points, fixed_scale))
+        let start = self.start.as_ref().filter(|_| self.positions.is_none() && self.points.is_none());
+        let estimate = start.map(|start| Estimate::given(start.read, &sfm.points, String::new()));
+        Ok(estimate.map(|estimate| estimate.surroundings(&sfm.points, fixed_scale)))
     }
 
     /// The start that all sources together give; none where there is no source.
     pub fn estimate(&self, sfm: &Reconstruction, city: &CityModel) -> Result<Option<Estimate>> {
-        let frame = city.crs.as_ref().and_then(|crs| crs.epsg).map(Frame::Epsg);
+        let frame = frame_of(city);
         let frame = frame.as_ref();
         let mut estimates = Vec::new();
         if let Some(Named { name, read }) = &self.start {
@@ -83,5 +98,78 @@ impl PlaceSources {
             estimates.push(from_control_points(read, name, sfm, city, frame)?);
         }
         Ok(agreed(estimates)?)
+    }
+}
+
+/// Where the parts of a merge stand in the city: a start for each, positions of the photographs of all.
+pub struct PartPlaces<'a> {
+    starts: Vec<Named<Start>>,
+    positions: Option<Named<PositionsFile>>,
+    city: &'a CityModel,
+}
+
+impl PartPlaces<'_> {
+    pub fn read<'a>(args: &MergeArgs, city: &'a CityModel) -> Result<PartPlaces<'a>> {
+        let starts = args.start.iter().map(|path| anyhow::Ok(Named::new(path, read_start(path)?)));
+        let named_positions = |path: &PathBuf| anyhow::Ok(Named::new(path, read_positions(path)?));
+        let mut positions = args.positions.as_ref().map(named_positions).transpose()?;
+        if args.start.is_empty() && positions.is_none() {
+            // Photographs without GPS say nothing, and are no error.
+            positions = args.photos.as_ref().and_then(|photos| named_positions(photos).ok());
+        }
+        Ok(PartPlaces { starts: starts.collect::<Result<_>>()?, positions, city })
+    }
+
+    /// What is known of a part's place, and what is to be said of it. A part of whose photographs no position is known is searched in the whole
+    /// city, unless it has a start.
+    pub fn of_part(&self, part: usize, sfm: &Reconstruction) -> Result<(Place, Vec<String>)> {
+        let frame = frame_of(self.city);
+        let (mut estimates, mut told) = (Vec::new(), Vec::new());
+        if let Some(Named { name, read }) = self.starts.get(part) {
+            estimates.push(Estimate::given(*read, &sfm.points, format!("start ({name})")));
+        }
+        if let Some(Named { name, read }) = &self.positions {
+            match from_positions(read, name, sfm, self.city, frame.as_ref()) {
+                Err(none @ (GeoreferenceError::NoCameras { .. } | GeoreferenceError::TooFewMatches { .. })) => {
+                    told.push(none.to_string());
+                }
+                estimate => estimates.push(estimate?),
+            }
+        }
+        let Some(estimate) = agreed(estimates)? else { return Ok((Place::default(), told)) };
+        told.extend(estimate.warnings);
+        Ok((Place::Start(estimate.start), told))
+    }
+}
+
+/// The city's coordinate system, where it is known.
+fn frame_of(city: &CityModel) -> Option<Frame> {
+    city.crs.as_ref().and_then(|crs| crs.epsg).map(Frame::Epsg)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::crs::Crs;
+
+    fn near(text: &str, city_epsg: Option<u32>) -> Result<Option<Disc>> {
+        let sources = PlaceSources { start: None, positions: None, points: None, near: Some(text.parse().unwrap()) };
+        let crs = city_epsg.map(|epsg| Crs { epsg: Some(epsg), ..Crs::default() });
+        Ok(sources.prior(&CityModel { crs, ..CityModel::default() })?.near)
+    }
+
+    #[test]
+    fn a_disc_in_degrees_comes_to_the_metres_of_the_city() {
+        // The spire of Amersfoort, where the Dutch grid begins: 155000, 463000.
+        let disc = near("52.155172,5.387206,250m", Some(28992)).unwrap().unwrap();
+        assert!((disc.center[0] - 155_000.0).hypot(disc.center[1] - 463_000.0) < 1.0, "{disc:?}");
+        assert_eq!(disc.radius_m, 250.0);
+        assert_eq!(near("155000,463000,12,250", None).unwrap().unwrap().center, [155_000.0, 463_000.0]);
+    }
+
+    #[test]
+    fn a_disc_in_degrees_needs_the_system_of_the_city() {
+        let message = near("52.155172,5.387206,250m", None).unwrap_err().to_string();
+        assert!(message.starts_with("--near") && message.contains("--crs EPSG:"), "{message}");
     }
 }

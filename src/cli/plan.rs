@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::city::{CityModel, CityOptions, PlanBox, is_index_at, read_city, read_city_within};
-use crate::geometry::{Start, Vector3};
+use crate::city::{CityIndex, CityModel, CityOptions, PlanBox, is_index_at, read_city, read_city_within};
+use crate::geometry::Vector3;
 use crate::imagery::SuperpixelSource;
 use crate::{AlignOptions, Place, Up};
 use anyhow::{Context, Result, ensure};
@@ -76,9 +76,8 @@ impl AlignPlan {
         self.settings.fixed_scale
     }
 
-    /// Everything that `align` takes, from a start on where there is one.
-    pub fn options(&self, start: Option<Start>) -> AlignOptions {
-        let place = start.map_or_else(|| Place::Anywhere(self.place.prior()), Place::Start);
+    /// Everything that `align` takes, from that place on.
+    pub fn options(&self, place: Place) -> AlignOptions {
         let Settings { fixed_scale, up, accuracy_m, seed, false_alarm } = self.settings;
         let options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::at(place) };
         options.with_false_alarm(false_alarm)
@@ -108,9 +107,9 @@ impl CityFiles {
         Ok(CityFiles { city: city.into(), terrain: args.terrain.clone(), options: args.options() })
     }
 
-    /// Whether a part of the city can be read by itself.
-    pub fn is_index(&self) -> bool {
-        is_index_at(&self.city)
+    /// The frame of a city that is an index, without anything in it.
+    pub fn frame_of_index(&self) -> Result<Option<CityModel>> {
+        is_index_at(&self.city).then(|| Ok(CityIndex::open(&self.city)?.read_frame()?)).transpose()
     }
 
     /// Reads the city; where it is an index, only what matters of it.

@@ -1,12 +1,12 @@
 //! What the planes of the cloud say for a pose, in bits.
 //!
 //! Question     how much likelier is what the planes of the cloud meet if the pose is right than if it was fitted to another place?
-//! Input        what each piece of each plane of the cloud meets, how much of the cloud the city occludes, and the rates of both by chance
+//! Input        what each patch of each plane of the cloud meets, how much of the cloud the city occludes, and the rates of both by chance
 //! Output       the logarithm of the likelihood ratio to base 2, and what each plane of the cloud adds to it
 //! Method       the model knows a share m of what the cloud saw; what it knows lies on it with Gaussian errors of a scale s, what it does
 //!              not know meets the city as by chance. Neither is demanded: the ratio is averaged over both (marginal likelihood), over m by
 //!              Jeffreys' prior, once for each class of plane of the cloud and once for all in common. So a cloud of which the model knows a fifth loses a third of a bit
-//!              by a miss and gains three or four by a hit. The pieces of a plane of the cloud count as one observation: their logarithms are averaged
+//!              by a miss and gains three or four by a hit. The patches of a plane of the cloud count as one observation: their logarithms are averaged
 //! Source       evidence against chance: Desolneux, Moisan and Morel 2000; Moisan and Stival 2004; marginal likelihoods: Kass and
 //!              Raftery 1995; the prior, and that no other loses less where the worst is taken: Krichevsky and Trofimov 1981;
 //!              docs/mathematics.md 16.2
@@ -15,7 +15,7 @@
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use super::chance::NullRates;
-use super::cloud_planes::{CLASSES, CloudPlanes};
+use super::cloud_planes::{CloudPlanes, INCLINATIONS};
 use super::occluded;
 use super::outcomes::{EDGES, KINDS, MISSED, Outcomes};
 
@@ -53,15 +53,15 @@ pub fn weigh(cloud_planes: &CloudPlanes, outcomes: &Outcomes, hidden: f64, chanc
 fn on_model_off_by(scale: f64, cloud_planes: &CloudPlanes, outcomes: &Outcomes, chance: &NullRates) -> PoseEvidence {
     let known = rates_of_known(scale);
     let tables = chance.rates.each_ref().map(|chance| log_ratios(&known, chance));
-    let mut logs: Vec<ByShare> = vec![[0.0; SHARES]; cloud_planes.class.len()];
-    for (piece, met) in cloud_planes.pieces.iter().zip(outcomes) {
-        let table = &tables[cloud_planes.class_of(piece)];
-        for (log, ratios) in logs[piece.cloud_plane as usize].iter_mut().zip(table) {
-            *log += piece.share * met.iter().zip(ratios).map(|(share, ratio)| share * ratio).sum::<f64>();
+    let mut logs: Vec<ByShare> = vec![[0.0; SHARES]; cloud_planes.inclinations.len()];
+    for (patch, met) in cloud_planes.patches.iter().zip(outcomes) {
+        let table = &tables[cloud_planes.inclination_of(patch)];
+        for (log, ratios) in logs[patch.cloud_plane as usize].iter_mut().zip(table) {
+            *log += patch.share * met.iter().zip(ratios).map(|(share, ratio)| share * ratio).sum::<f64>();
         }
     }
-    let mut of_class = [[0.0; SHARES]; CLASSES];
-    for (class, logs) in cloud_planes.class.iter().zip(&logs) {
+    let mut of_class = [[0.0; SHARES]; INCLINATIONS];
+    for (class, logs) in cloud_planes.inclinations.iter().zip(&logs) {
         of_class[*class as usize].iter_mut().zip(logs).for_each(|(sum, log)| *sum += log);
     }
     let in_common: ByShare = std::array::from_fn(|k| of_class.iter().map(|sums| sums[k]).sum());
@@ -70,7 +70,7 @@ fn on_model_off_by(scale: f64, cloud_planes: &CloudPlanes, outcomes: &Outcomes, 
     let bits = log2_mean_exp2(&[apart, log2_mean_exp2(&in_common)]);
     let likeliest = of_class.map(|sums| (0..SHARES).fold(0, |best, k| if sums[k] > sums[best] { k } else { best }));
     let by_cloud_plane =
-        cloud_planes.class.iter().zip(&logs).map(|(class, log)| log[likeliest[*class as usize]]).collect();
+        cloud_planes.inclinations.iter().zip(&logs).map(|(class, log)| log[likeliest[*class as usize]]).collect();
     PoseEvidence { bits, by_cloud_plane }
 }
 

@@ -1,12 +1,12 @@
 //! How often planes of the cloud meet the city by chance: measured on poses that were fitted to other places.
 
-use super::cloud_planes::{CLASSES, CloudPlanes};
+use super::cloud_planes::{CloudPlanes, INCLINATIONS};
 use super::outcomes::{KINDS, Outcomes};
 
 /// Rates of what is met, by class of plane of the cloud.
 #[derive(Clone, Debug)]
 pub struct NullRates {
-    pub rates: [[f64; KINDS]; CLASSES],
+    pub rates: [[f64; KINDS]; INCLINATIONS],
     /// Shares of the cloud that the city occludes under null poses, ascending.
     pub hidden: Vec<f64>,
 }
@@ -14,15 +14,15 @@ pub struct NullRates {
 impl NullRates {
     /// The mean over null poses, of whom `unseen` more met everything alike; `hidden` is what the city occludes under each.
     pub fn new(cloud_planes: &CloudPlanes, null_poses: &[Outcomes], mut hidden: Vec<f64>, unseen: f64) -> NullRates {
-        let mut rates = [[unseen / KINDS as f64; KINDS]; CLASSES];
-        let mut of_class = [0.0; CLASSES];
-        for piece in &cloud_planes.pieces {
-            of_class[cloud_planes.class_of(piece)] += piece.share;
+        let mut rates = [[unseen / KINDS as f64; KINDS]; INCLINATIONS];
+        let mut of_class = [0.0; INCLINATIONS];
+        for patch in &cloud_planes.patches {
+            of_class[cloud_planes.inclination_of(patch)] += patch.share;
         }
         for outcomes in null_poses {
-            for (piece, shares) in cloud_planes.pieces.iter().zip(outcomes) {
-                let class = cloud_planes.class_of(piece);
-                let weight = piece.share / of_class[class];
+            for (patch, shares) in cloud_planes.patches.iter().zip(outcomes) {
+                let class = cloud_planes.inclination_of(patch);
+                let weight = patch.share / of_class[class];
                 rates[class].iter_mut().zip(shares).for_each(|(rate, share)| *rate += weight * share);
             }
         }

@@ -1,10 +1,10 @@
-//! Who can speak for a pose: planes in space, each of which the cloud saw in one or more pieces.
+//! Planes of the cloud: the independent observations for or against a pose, each seen in one or more patches.
 //!
 //! Question     which parts of the cloud lie on the city, or not, independently of each other?
 //! Input        the patches of a cloud, level frame, and the scale that a pose gives them
-//! Output       planes of the cloud, each with its pieces and the sample points that are asked of each piece
-//! Method       coplanar patches are pieces of one plane of the cloud, the largest first: a front across eight houses lies on the city by one
-//!              coincidence, not by eight. Planes of the cloud are of three classes: level, wall, slope
+//! Output       planes of the cloud, each with its patches and the sample points that are asked of each patch
+//! Method       coplanar patches belong to one plane of the cloud, the largest first: a front across eight houses lies on the city by one
+//!              coincidence, not by eight. Planes of the cloud are horizontal, vertical or oblique
 //! Source       docs/mathematics.md 16.1
 //! Assumptions  planes of the cloud meet the city independently of each other under a wrong pose
 
@@ -13,13 +13,13 @@ use crate::limits::EvidenceLimits;
 
 /// How a plane of the cloud stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
-    Level,
-    Wall,
-    Slope,
+pub enum Inclination {
+    Horizontal,
+    Vertical,
+    Oblique,
 }
 
-pub const CLASSES: usize = 3;
+pub const INCLINATIONS: usize = 3;
 
 /// A patch, as part of a plane of the cloud.
 #[derive(Clone, Debug)]
@@ -36,16 +36,17 @@ pub struct CloudPlanePatch {
 /// All planes of a cloud.
 #[derive(Clone, Debug, Default)]
 pub struct CloudPlanes {
-    pub class: Vec<Class>,
-    pub pieces: Vec<CloudPlanePatch>,
-    /// Sample points of the level cloud, piece by piece, evenly over each: those that are looked up, and those whose lines of sight are traced.
+    /// One for each.
+    pub inclinations: Vec<Inclination>,
+    pub patches: Vec<CloudPlanePatch>,
+    /// Sample points of the level cloud, patch by patch, evenly over each: those that are looked up, and those whose lines of sight are traced.
     pub sample_points: Vec<u32>,
     pub lines: Vec<u32>,
 }
 
 impl CloudPlanes {
-    pub fn class_of(&self, piece: &CloudPlanePatch) -> usize {
-        self.class[piece.cloud_plane as usize] as usize
+    pub fn inclination_of(&self, patch: &CloudPlanePatch) -> usize {
+        self.inclinations[patch.cloud_plane as usize] as usize
     }
 
     /// The planes of a scene's cloud at a scale (metres of the city for one of the start).
@@ -60,14 +61,14 @@ impl CloudPlanes {
             let found = leaders.iter().position(|leader| is_coplanar(leader, patch, scale, limits));
             let cloud_plane = found.unwrap_or_else(|| {
                 leaders.push(patch);
-                cloud_planes.class.push(class(patch, scene.limits.upright_sin));
+                cloud_planes.inclinations.push(inclination(patch, scene.limits.upright_sin));
                 leaders.len() - 1
             });
             cloud_planes.add(cloud_plane as u32, patch, limits);
         }
         let mut total = vec![0.0; leaders.len()];
-        cloud_planes.pieces.iter().for_each(|p| total[p.cloud_plane as usize] += p.share);
-        cloud_planes.pieces.iter_mut().for_each(|p| p.share /= total[p.cloud_plane as usize]);
+        cloud_planes.patches.iter().for_each(|p| total[p.cloud_plane as usize] += p.share);
+        cloud_planes.patches.iter_mut().for_each(|p| p.share /= total[p.cloud_plane as usize]);
         cloud_planes
     }
 
@@ -82,7 +83,7 @@ impl CloudPlanes {
         let lines = evenly(limits.traced_points, &mut self.lines);
         // By its points: what else happens to lie in the plane of a front is small, and does not outvote it.
         let share = patch.sample_points.len() as f64;
-        self.pieces.push(CloudPlanePatch { cloud_plane, share, sample_points, lines });
+        self.patches.push(CloudPlanePatch { cloud_plane, share, sample_points, lines });
     }
 }
 
@@ -93,11 +94,11 @@ fn is_coplanar(leader: &LevelPatch, patch: &LevelPatch, scale: f64, limits: &Evi
     same_side > limits.same_plane_deg.to_radians().cos() && across_m < limits.same_plane_m
 }
 
-fn class(patch: &LevelPatch, upright_sin: f64) -> Class {
+fn inclination(patch: &LevelPatch, upright_sin: f64) -> Inclination {
     match patch.normal.z.abs() {
-        z if z > 1.0 - upright_sin => Class::Level,
-        z if z < upright_sin => Class::Wall,
-        _ => Class::Slope,
+        z if z > 1.0 - upright_sin => Inclination::Horizontal,
+        z if z < upright_sin => Inclination::Vertical,
+        _ => Inclination::Oblique,
     }
 }
 
@@ -115,31 +116,31 @@ mod tests {
     }
 
     #[test]
-    fn a_front_across_several_houses_is_one_witness() {
+    fn a_front_across_several_houses_is_one_observation() {
         // Three houses in a row, 3 m between them: two fronts, six gables.
         let row = Block::row(&House::flat([8.0, 10.0, 7.0]), 3, 11.0);
         let (cloud_planes, patches) = of_block(row, &walls_alone());
-        assert_eq!(cloud_planes.class.len(), 2 + 6);
+        assert_eq!(cloud_planes.inclinations.len(), 2 + 6);
         assert!(patches >= 12, "{patches}");
-        assert!(cloud_planes.class.iter().all(|class| *class == Class::Wall));
+        assert!(cloud_planes.inclinations.iter().all(|inclination| *inclination == Inclination::Vertical));
     }
 
     #[test]
     fn the_pieces_of_a_witness_share_its_one_vote_and_ask_their_own_points() {
         let seen = CloudOptions { points_per_roof: 100, points_on_ground: 200, ..walls_alone() };
         let (cloud_planes, patches) = of_block(Block::four_houses().with_ground(), &seen);
-        assert_eq!(cloud_planes.pieces.len(), patches);
-        let mut total = vec![0.0; cloud_planes.class.len()];
-        cloud_planes.pieces.iter().for_each(|piece| total[piece.cloud_plane as usize] += piece.share);
+        assert_eq!(cloud_planes.patches.len(), patches);
+        let mut total = vec![0.0; cloud_planes.inclinations.len()];
+        cloud_planes.patches.iter().for_each(|patch| total[patch.cloud_plane as usize] += patch.share);
         assert!(total.iter().all(|sum| (sum - 1.0).abs() < 1e-12), "{total:?}");
-        assert!(cloud_planes.class.contains(&Class::Level));
-        for piece in &cloud_planes.pieces {
-            let sample_points = &cloud_planes.sample_points[piece.sample_points.clone()];
+        assert!(cloud_planes.inclinations.contains(&Inclination::Horizontal));
+        for patch in &cloud_planes.patches {
+            let sample_points = &cloud_planes.sample_points[patch.sample_points.clone()];
             assert!(
                 sample_points.len() >= 8 && sample_points.windows(2).all(|pair| pair[0] < pair[1]),
                 "{sample_points:?}"
             );
-            assert_eq!(piece.lines.len(), 3);
+            assert_eq!(patch.lines.len(), 3);
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Question     which pose is right, and what speaks against it?
 //! Input        a scene whose prior reaches beyond the start's, and the poses that the search found within the start's reach
 //! Output       every distinct pose with its evidence: those of the search, and the best that were fitted to other places, which are refined to the end
-//! Method       the null poses of other places give the rates by chance, and the best of them are heard as rivals: who wins within the
+//! Method       the null poses of other places give the rates by chance, and the best of them are compared as rivals: who wins within the
 //!              start's reach is compared with what lies beyond it, too
 
 use rayon::prelude::*;
@@ -79,7 +79,7 @@ impl<'a> CandidateEvaluation<'a> {
 
     /// How many planes in space can speak for a pose.
     pub fn cloud_planes(&self) -> usize {
-        self.cloud_planes.class.len()
+        self.cloud_planes.inclinations.len()
     }
 
     /// The best distinct null poses, refined to the end.
@@ -89,11 +89,11 @@ impl<'a> CandidateEvaluation<'a> {
         ranked: &[(f64, Similarity)],
         answer: &Basin,
     ) -> Vec<EvaluatedCandidate> {
-        let NullPoseLimits { heard: most, .. } = self.scene.limits.null_poses;
-        let mut heard: Vec<Basin> = Vec::new();
+        let NullPoseLimits { rivals: most, .. } = self.scene.limits.null_poses;
+        let mut basins: Vec<Basin> = Vec::new();
         for (_, pose) in ranked {
-            if heard.len() < most && !heard.iter().any(|other| other.has(pose)) {
-                heard.push(Basin::around(refiner, pose));
+            if basins.len() < most && !basins.iter().any(|other| other.has(pose)) {
+                basins.push(Basin::around(refiner, pose));
             }
         }
         let to_the_end = |place: &Basin| {
@@ -102,7 +102,7 @@ impl<'a> CandidateEvaluation<'a> {
             let weighed = self.weigh(&candidate.refined.city_from_level);
             EvaluatedCandidate { candidate, weighed, by_chance: true }
         };
-        let sharp: Vec<EvaluatedCandidate> = heard.par_iter().map(to_the_end).collect();
+        let sharp: Vec<EvaluatedCandidate> = basins.par_iter().map(to_the_end).collect();
         sharp.into_iter().filter(|c| !answer.has(&c.candidate.refined.city_from_level)).collect()
     }
 }

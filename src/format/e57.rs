@@ -16,6 +16,11 @@ pub enum E57Error {
     Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{path}, {place}: {problem}; export the scans again as E57")]
     Malformed { path: PathBuf, place: String, problem: String },
+    #[error(
+        "{path}, {place}: it says {points} points, and of a file of {length} bytes at most one for each byte is read; export the \
+         scans again as E57 with coordinates as floating-point numbers, or as LAS"
+    )]
+    TooDense { path: PathBuf, place: String, points: u64, length: u64 },
 }
 
 /// What a file says of its points.
@@ -39,6 +44,10 @@ pub fn is_e57(start: &[u8]) -> bool {
     start.starts_with(b"ASTM-E57")
 }
 
+/// An attribute that has one value only takes no bytes, so that a few bytes could claim any number of points. Chosen: a point takes a
+/// byte at least; three coordinates to a centimetre within ten metres take four.
+const MOST_POINTS_OF_A_BYTE: u64 = 1;
+
 pub fn read_e57(path: &Path) -> Result<E57Cloud, E57Error> {
     let problem = "the file contradicts itself".to_owned();
     let damaged = |_| Err(E57Error::Malformed { path: path.into(), place: "scans".into(), problem });
@@ -57,7 +66,12 @@ fn scans(path: &Path) -> Result<E57Cloud, E57Error> {
     let mut cloud = Collector::new(&scans, reader.coordinate_metadata());
     for (number, scan) in scans.iter().enumerate() {
         let place = || format!("scan {} of {}", number + 1, scans.len());
-        check_count(scan, length).map_err(|problem| fault(place(), problem))?;
+        check_count(scan, length).map_err(|points| E57Error::TooDense {
+            path: path.into(),
+            place: place(),
+            points,
+            length,
+        })?;
         let mut points = reader.pointcloud_simple(scan).map_err(|error| fault(place(), told(error)))?;
         points.apply_pose(true);
         points.intensity_to_color(false);
@@ -68,13 +82,8 @@ fn scans(path: &Path) -> Result<E57Cloud, E57Error> {
     Ok(cloud.finish())
 }
 
-/// An attribute that has one value only takes no bytes, so that a few bytes could claim any number of points. Chosen: a point takes a
-/// byte at least; three coordinates to a centimetre within ten metres take four.
-fn check_count(scan: &PointCloud, length: u64) -> Result<(), String> {
-    match scan.records > length {
-        true => Err(format!("it says {} points, more than the file's {length} bytes can hold", scan.records)),
-        false => Ok(()),
-    }
+fn check_count(scan: &PointCloud, length: u64) -> Result<(), u64> {
+    if scan.records > length * MOST_POINTS_OF_A_BYTE { Err(scan.records) } else { Ok(()) }
 }
 
 /// The name of an attribute that is neither understood nor carried.

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 use las::crs::GeoTiffData;
 
-use self::check::{check_count, check_head};
-use self::depth::{Shallow, on_deep_stack};
+use self::check::{Packing, check_count, check_head};
+use self::depth::{Shallow, in_place, on_deep_stack};
 use self::packed::check_packed;
 use super::file::open_regular;
 use super::ply::{CloudField, FieldKind};
@@ -65,17 +65,21 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
     let fault = |place: &str, problem: String| LasError::Malformed { path: path.into(), place: place.into(), problem };
     let mut file = open_regular(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
-    check_head(&mut file, length).map_err(|problem| fault("header", problem))?;
+    let packing = check_head(&mut file, length).map_err(|problem| fault("header", problem))?;
     file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
-    // The decoder of LAZ panics on some damaged streams, and on some descriptions of them.
-    let decoded = on_deep_stack(|| {
+    let decode = || {
         let header = las::Header::new(BufReader::new(&file)).map_err(|error| fault("header", told(&error)))?;
         check_count(&header, length).map_err(|problem| fault("header", problem))?;
         check_packed(&mut BufReader::new(&file), &header, length).map_err(|problem| fault("points", problem))?;
         (&file).seek(SeekFrom::Start(0)).map_err(unreadable)?;
         let reader = las::Reader::new(Shallow::new(file)).map_err(|error| fault("header", told(&error)))?;
         points(path, reader, &header)
-    });
+    };
+    // The decoder of LAZ panics on some damaged streams, and on some descriptions of them.
+    let decoded = match packing {
+        Packing::Plain => in_place(decode),
+        Packing::Packed => on_deep_stack(decode),
+    };
     decoded.unwrap_or_else(|| Err(fault("points", "the packed points are damaged".into())))
 }
 

@@ -25,6 +25,15 @@ impl Axes {
         }
     }
 
+    /// Those whose first lies across the coordinate axis that is most across the unit vector `z`: of a wall, one that is level and one that
+    /// is upright, in which corners of the same height stay on one line to the last bit.
+    pub fn along_coordinates(z: &Vector3<f64>) -> Axes {
+        let mut across = Vector3::zeros();
+        across[z.iamin()] = 1.0;
+        let x = across.cross(z).normalize();
+        Axes { x, y: z.cross(&x), z: *z }
+    }
+
     #[inline]
     pub fn coordinates(&self, v: &Vector3<f64>) -> [f64; 3] {
         [self.x.dot(v), self.y.dot(v), self.z.dot(v)]

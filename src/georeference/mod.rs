@@ -27,3 +27,4 @@ pub use control::from_control_points;
 pub use error::GeoreferenceError;
 pub use estimate::{ControlPoint, ControlUse, Estimate};
 pub use positions::from_positions;
+pub use projection::from_geographic;

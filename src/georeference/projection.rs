@@ -27,6 +27,16 @@ enum Way {
     },
 }
 
+/// Where a latitude and longitude (degrees, WGS 84) lie in the city, east and north in metres. `source_name` is who says so.
+pub fn from_geographic(
+    [latitude_deg, longitude_deg]: [f64; 2],
+    source_name: &str,
+    city_frame: Option<&Frame>,
+) -> Result<[f64; 2], GeoreferenceError> {
+    let to_city = ToCity::new(&GEOGRAPHIC, city_frame, source_name)?;
+    Ok(to_city.place([longitude_deg, latitude_deg], None)?.east_north)
+}
+
 /// A frame of east, north and up, in that of the Earth's centre.
 struct Tangent {
     origin: Vector3<f64>,

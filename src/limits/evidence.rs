@@ -25,8 +25,9 @@ pub struct NullPoseLimits {
     pub basin_m: f64,
     pub basin_rad: f64,
     pub basin_log_scale: f64,
-    /// The best null poses of other places, which are refined to the end and heard as rivals. Chosen: as many as the search's candidates.
-    pub heard: usize,
+    /// The best null poses of other places, which are refined to the end and compared with the answer as rivals. Chosen: as many as the
+    /// search's candidates.
+    pub rivals: usize,
 }
 
 impl Default for NullPoseLimits {
@@ -42,7 +43,7 @@ impl Default for NullPoseLimits {
             basin_m: 2.0,
             basin_rad: 0.105,
             basin_log_scale: 0.08,
-            heard: 6,
+            rivals: 6,
         }
     }
 }
@@ -50,14 +51,14 @@ impl Default for NullPoseLimits {
 /// What speaks for a pose, in bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvidenceLimits {
-    /// Coplanar pieces of the cloud are one observation: normals within this angle. Measured on 369 poses: where each piece of a front
+    /// Coplanar patches of the cloud are one observation: normals within this angle. Measured on 369 poses: where each patch of a front
     /// counts, wrong poses reach 86 bits, where the front counts once, 15.
     pub same_plane_deg: f64,
     /// Their centres must lie within this of the larger one's plane, metres. Measured on the same poses.
     pub same_plane_m: f64,
-    /// Sample points of a piece that are looked up. Derived: a share of a piece is then known to a seventh.
+    /// Sample points of a patch that are looked up. Derived: a share of a patch is then known to a seventh.
     pub sample_points: usize,
-    /// Sample points of a piece whose lines of sight are traced. Chosen: two in three decide.
+    /// Sample points of a patch whose lines of sight are traced. Chosen: two in three decide.
     pub traced_points: usize,
     /// A sample point lies on a facet within this distance, metres. Measured on the same poses: 0.2 to 0.5 m do alike.
     pub tolerance_m: f64,

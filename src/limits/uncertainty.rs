@@ -5,7 +5,7 @@
 pub struct UncertaintyLimits {
     /// Rounds in which the pose is estimated, each with points put on facets anew. Chosen.
     pub rounds: usize,
-    /// Points within this of a surface lie on it, units. Chosen: one and a half times the score's, so that buildings which stand off are heard, and
+    /// Points within this of a surface lie on it, units. Chosen: one and a half times the score's, so that buildings which stand off count, and
     /// count by what their heavy tails give them.
     pub gate_units: f64,
     /// Steps in which spreads and unknowns settle in a round. Chosen.

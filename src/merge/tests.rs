@@ -19,7 +19,7 @@ fn two_parts() -> (Vec<MergePart>, [Similarity; 2]) {
         let sfm_from_city = Similarity { scale, ..plain.sfm_from_city };
         let Survey { sfm, city_from_sfm, .. } =
             block.capture(stations, &CaptureOptions { sfm_from_city, noise_px: 0.1, ..plain });
-        (MergePart { name: name.into(), sfm, start: None }, city_from_sfm)
+        (MergePart { name: name.into(), sfm, place: Place::default() }, city_from_sfm)
     };
     let ((one, city_from_one), (other, city_from_other)) =
         (part("one", &stations[..13], 0.13), part("other", &stations[7..], 0.4));

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | failed | there is no pose (or nothing to search: `align/obstacle.rs`) |
 //! | undetermined | a given scale is contradicted by a pose of free scale whose evidence is enough |
+//! | ambiguous | in a whole city, the evidence outweighs chance at one of its places, but not by the false alarms that are allowed |
 //! | failed | the evidence for the best pose is less than what is needed |
 //! | ambiguous | a rival beyond the start's reach has more bits, or one within it is less than log2(1 / false alarms) behind |
 //! | undetermined | a freedom is not determined (see [`super::freedoms`]) |
@@ -113,7 +114,12 @@ pub fn judge(evidence: &Evidence, limits: &VerdictLimits) -> Decision {
     let (verdict, reason) = if let Some(scale) = denied {
         (Verdict::Undetermined, contradicted_reason(&scale))
     } else if certainty.bits < certainty.needed_bits {
-        (Verdict::Failed, failed_reason(&certainty, evidence))
+        match evidence.space {
+            SearchSpace::City { .. } if certainty.bits > certainty.needed_bits - limits.margin_bits() => {
+                (Verdict::Ambiguous, elsewhere_reason(&certainty))
+            }
+            _ => (Verdict::Failed, failed_reason(&certainty, evidence)),
+        }
     } else if let Some(beyond) = serious.iter().find(|r| r.beyond_start) {
         (Verdict::Ambiguous, beyond_reason(best, beyond, hold))
     } else if !serious.is_empty() {
@@ -232,6 +238,15 @@ fn failed_reason(certainty: &Certainty, evidence: &Evidence) -> String {
         "nothing fits better than chance may: {speaking} of the {witnesses} planes that the cloud saw lie on the city in the best pose, which is evidence of \
          {bits:.1} bits, and {needed_bits:.1} are needed{best_by_chance}; {}",
         what_to_check(evidence.space)
+    )
+}
+
+/// The pose is likelier right than not, but some other place of the city may yet explain as much.
+fn elsewhere_reason(certainty: &Certainty) -> String {
+    let Certainty { bits, needed_bits, search_bits, speaking, witnesses, .. } = certainty;
+    format!(
+        "the best pose is not beyond doubt: {speaking} of the {witnesses} planes that the cloud saw lie on the city, which is evidence of {bits:.1} bits where \
+         {needed_bits:.1} are needed, since 2^{search_bits:.0} poses were looked at; --near or a start would settle it, or more photographs"
     )
 }
 

@@ -76,7 +76,10 @@ fn more_points_than_bytes_are_refused() {
     assert!(check_count(&scan, 0).is_ok());
     let mut lying = PointCloud::default();
     lying.records = 1025;
-    assert!(check_count(&lying, 1024).unwrap_err().contains("1025 points"));
+    assert_eq!(check_count(&lying, 1024), Err(1025));
+    let (path, place) = ("a.e57".into(), "scan 1 of 1".into());
+    let message = E57Error::TooDense { path, place, points: 1025, length: 1024 }.to_string();
+    assert!(message.contains("1025 points") && message.contains("one for each byte") && message.contains("or as LAS"));
 }
 
 #[test]

@@ -18,9 +18,20 @@ const RECORDS_BEHIND_SINCE: [u8; 2] = [1, 4];
 const RECORDS_BEHIND_AT: u64 = 235;
 const LONG_RECORD_HEAD_BYTES: u64 = 60;
 
-/// Offsets and lengths that the crate takes memory for, against the length of the file.
-pub(super) fn check_head(file: &mut (impl Read + Seek), length: u64) -> Result<(), String> {
-    let mut head = [0; 104];
+/// The format of the points, and the bit of it that says that they are packed.
+const FORMAT_AT: usize = 104;
+const PACKED_BIT: u8 = 0x80;
+
+/// How the points lie in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Packing {
+    Plain,
+    Packed,
+}
+
+/// Offsets and lengths that the crate takes memory for, against the length of the file; and whether its points are packed.
+pub(super) fn check_head(file: &mut (impl Read + Seek), length: u64) -> Result<Packing, String> {
+    let mut head = [0; FORMAT_AT + 1];
     file.read_exact(&mut head).map_err(|_| format!("{length} bytes are too few for a LAS header"))?;
     let u16_at = |at: usize| u64::from(u16::from_le_bytes([head[at], head[at + 1]]));
     let u32_at = |at: usize| u64::from(u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
@@ -32,7 +43,10 @@ pub(super) fn check_head(file: &mut (impl Read + Seek), length: u64) -> Result<(
         return Err(format!("{records} records cannot lie before the points, at byte {points_at}"));
     }
     // Whatever length it says of its header.
-    if head[24..26] < RECORDS_BEHIND_SINCE[..] { Ok(()) } else { check_records_behind(file, length) }
+    if head[24..26] >= RECORDS_BEHIND_SINCE[..] {
+        check_records_behind(file, length)?;
+    }
+    Ok(if head[FORMAT_AT] & PACKED_BIT == 0 { Packing::Plain } else { Packing::Packed })
 }
 
 /// Records behind the points, whose lengths have 64 bits.

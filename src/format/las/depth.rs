@@ -4,7 +4,10 @@
 //! say so tens of thousands of times in a byte, and a stack that overflows ends the process. The essence is: whoever asks the source for a
 //! byte does so from the depth at which it is, so the source can see it and refuse.
 //!
-//! Layered chunks are read whole before they are unpacked, so that the source sees nothing of it: there the stack alone is the limit.
+//! Layered chunks are read whole before they are unpacked, so that the source sees nothing of it: there the stack alone is the limit. Nothing
+//! that the file says bounds the depth: one point may change clocks any number of times, and 130 bytes of a layer of times suffice where all
+//! of them say so. To know it before means to unpack the layer of times, and that of the coordinates, which tells whose time changes: half of the work
+//! twice.
 
 use std::io::{BufRead, BufReader, Error, Read, Result, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,9 +22,14 @@ const DEEPEST_BYTES: usize = 64 << 20;
 pub(super) fn on_deep_stack<T: Send>(unpack: impl FnOnce() -> T + Send) -> Option<T> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES);
-        let unpacked = thread.spawn_scoped(scope, || catch_unwind(AssertUnwindSafe(unpack)).ok());
+        let unpacked = thread.spawn_scoped(scope, || in_place(unpack));
         unpacked.ok()?.join().ok().flatten()
     })
+}
+
+/// Runs `read` where it stands; `None` where it panics. For points that are not packed, which nothing calls itself for.
+pub(super) fn in_place<T>(read: impl FnOnce() -> T) -> Option<T> {
+    catch_unwind(AssertUnwindSafe(read)).ok()
 }
 
 /// A source that refuses to be read from too deep a stack.

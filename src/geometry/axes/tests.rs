@@ -25,3 +25,16 @@ proptest! {
         prop_assert!((axes.x.cross(&axes.y) - axes.z).norm() < 1e-14);
     }
 }
+
+#[test]
+fn along_coordinates_a_wall_has_a_level_and_an_upright_axis_exactly() {
+    for step in 1..64 {
+        let (s, c) = (f64::from(step) * 0.1).sin_cos();
+        let wall = Axes::along_coordinates(&Vector3::new(c, s, 0.0));
+        assert_eq!((wall.x.z, wall.y.x, wall.y.y), (0.0, 0.0, 0.0), "{wall:?}");
+    }
+    for z in [Vector3::new(0.48, -0.6, 0.64), Vector3::z(), -Vector3::x()] {
+        let Axes { x, y, .. } = Axes::along_coordinates(&z);
+        assert!((x.cross(&y) - z).norm() < 1e-15 && x.dot(&y).abs() < 1e-15 && (x.norm() - 1.0).abs() < 1e-15);
+    }
+}

@@ -120,6 +120,11 @@ impl CityModel {
         if let Some(whole) = &self.part_of {
             return Some((whole.low, whole.high));
         }
+        self.own_bounds()
+    }
+
+    /// The same of what is there.
+    pub fn own_bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
         let first = *self.vertices.first()?;
         Some(self.vertices.iter().fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex))))
     }

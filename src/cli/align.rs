@@ -91,8 +91,12 @@ impl Inputs {
     fn read(plan: &AlignPlan, session: &Session) -> Result<Inputs> {
         let voice = &session.voice;
         // Of an index only what the start can reach is read, so the start comes first.
-        let early = plan.city.is_index().then(|| read_sfm(plan, session)).transpose()?;
-        let within = early.as_ref().and_then(|sfm| plan.place.surroundings(sfm, plan.fixed_scale()));
+        let frame = plan.city.frame_of_index()?;
+        let early = frame.as_ref().map(|_| read_sfm(plan, session)).transpose()?;
+        let within = match frame.as_ref().zip(early.as_ref()) {
+            Some((frame, sfm)) => plan.place.surroundings(sfm, frame, plan.fixed_scale())?,
+            None => None,
+        };
         voice.bar.show("reading the city", 0, 0);
         let city = plan.city.read(within.as_ref())?;
         voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));

@@ -39,7 +39,7 @@ fn tell(path: &Path, args: &IndexArgs, session: &Session) -> Result<Outcome> {
     let overview = index.overview();
     voice.warnings(&overview.warnings);
     if session.common.json {
-        voice.json(&serde_json::to_string_pretty(&overview)?, Some(path))?;
+        voice.json(&(serde_json::to_string_pretty(&overview)? + "\n"), Some(path))?;
     } else {
         let names: Vec<String> = args.city.iter().map(|path| file_name(path)).collect();
         voice.result(&summary::of_index(&overview, &names, path, voice.seconds()), Some(path))?;

@@ -66,20 +66,21 @@ impl PlaceSources {
     }
 
     /// What of the city matters, where that is known before it is read; all of it where positions or control points must be set into it first.
-    pub fn surroundings(&self, sfm: &Reconstruction, fixed_scale: Option<f64>) -> Option<PlanBox> {
-        match self.near {
-            Some(Near::City(near)) => {
-                let limits = Limits::default();
-                let beyond_m = limits.place_search.most_radius_m + limits.null_poses.least_reach_m;
-                return Some(PlanBox::about(near.center, near.radius_m + beyond_m));
-            }
-            // Degrees have a place only in a city whose system is known.
-            Some(Near::Geographic { .. }) => return None,
-            None => {}
+    /// `frame`: the city without anything in it.
+    pub fn surroundings(
+        &self,
+        sfm: &Reconstruction,
+        frame: &CityModel,
+        fixed_scale: Option<f64>,
+    ) -> Result<Option<PlanBox>> {
+        if let Some(near) = self.prior(frame)?.near {
+            let limits = Limits::default();
+            let beyond_m = limits.place_search.most_radius_m + limits.null_poses.least_reach_m;
+            return Ok(Some(PlanBox::about(near.center, near.radius_m + beyond_m)));
         }
-        let start = self.start.as_ref().filter(|_| self.positions.is_none() && self.points.is_none())?;
-        let estimate = Estimate::given(start.read, &sfm.points, String::new());
-        Some(estimate.surroundings(&sfm.points, fixed_scale))
+        let start = self.start.as_ref().filter(|_| self.positions.is_none() && self.points.is_none());
+        let estimate = start.map(|start| Estimate::given(start.read, &sfm.points, String::new()));
+        Ok(estimate.map(|estimate| estimate.surroundings(&sfm.points, fixed_scale)))
     }
 
     /// The start that all sources together give; none where there is no source.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::city::{CityModel, CityOptions, PlanBox, is_index_at, read_city, read_city_within};
+use crate::city::{CityIndex, CityModel, CityOptions, PlanBox, is_index_at, read_city, read_city_within};
 use crate::geometry::Vector3;
 use crate::imagery::SuperpixelSource;
 use crate::{AlignOptions, Place, Up};
@@ -107,9 +107,9 @@ impl CityFiles {
         Ok(CityFiles { city: city.into(), terrain: args.terrain.clone(), options: args.options() })
     }
 
-    /// Whether a part of the city can be read by itself.
-    pub fn is_index(&self) -> bool {
-        is_index_at(&self.city)
+    /// The frame of a city that is an index, without anything in it.
+    pub fn frame_of_index(&self) -> Result<Option<CityModel>> {
+        is_index_at(&self.city).then(|| Ok(CityIndex::open(&self.city)?.read_frame()?)).transpose()
     }
 
     /// Reads the city; where it is an index, only what matters of it.

@@ -97,7 +97,7 @@ impl Look<'_> {
 
 impl FacetGrid {
     pub(super) fn new(city: &CityModel, reach_m: f64) -> FacetGrid {
-        let (low, high) = city.bounds().unwrap_or((Point3::origin(), Point3::origin()));
+        let (low, high) = city.own_bounds().unwrap_or((Point3::origin(), Point3::origin()));
         let (low, high) = (low - Vector3::repeat(reach_m), high + Vector3::repeat(reach_m));
         let extent = high - low;
         let mut tile_m = CELL_OF_REACH * reach_m * TILE as f64;

@@ -57,6 +57,11 @@ impl CityIndex {
         self.read(&self.file.entries.iter().collect::<Vec<_>>())
     }
 
+    /// Origin and reference system, without anything that stands there.
+    pub fn read_frame(&self) -> Result<CityModel, CityError> {
+        self.read(&[])
+    }
+
     /// What stands in the blocks that a box of plan touches; where it touches none, in the nearest, so that whoever asks can tell how
     /// far off the city is.
     pub fn read_within(&self, within: &PlanBox) -> Result<CityModel, CityError> {

@@ -130,7 +130,6 @@ fn sources_that_place_nothing_are_refused_with_what_to_do() {
     refused(&room, &["--positions", "city.obj"], &["--positions is a city model"]);
     refused(&room, &["--points", &geo], &["line 2"]);
     refused(&room, &["--photos", &data("exif")], &["exif", "--crs EPSG:<code>"]);
-    refused(&room, &[], &["--positions", "--points", "--start"]);
     let words = std::fs::read_to_string(data("name_x_y_z.txt")).unwrap();
     let swapped = words.lines().map(|line| {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -138,6 +137,21 @@ fn sources_that_place_nothing_are_refused_with_what_to_do() {
     });
     std::fs::write(room.path().join("swapped.txt"), swapped.collect::<String>()).unwrap();
     refused(&room, &["--positions", "swapped.txt"], &["mirror image", "east and north are exchanged", "swapped.txt"]);
+}
+
+#[test]
+fn with_nothing_said_of_the_place_the_city_is_searched() {
+    let room = room();
+    let report = json(&align(&room, &["-o", "out", "--json"]));
+    assert_eq!((&report["verdict"], &report["prior"]), (&Value::from("aligned"), &Value::Null), "{}", report["reason"]);
+    assert_eq!(report["search"]["solver"], "walls in plan");
+    let dry = align(&room, &["--dry-run"]);
+    assert!(
+        text(&dry.stderr).contains("the city would be searched")
+            || text(&dry.stdout).contains("the city would be searched")
+    );
+    let far = align(&room, &["--near", "190000,535000,100", "-o", "far"]);
+    assert_eq!(far.status.code(), Some(1), "{}", text(&far.stderr));
 }
 
 #[test]

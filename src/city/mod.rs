@@ -47,5 +47,6 @@ pub use model::{CityModel, CityRole, CitySize, CitySource, Facet, FacetId, Objec
 pub use options::{CityOptions, CityUnit, CityUp};
 pub use plan_box::PlanBox;
 pub use read::{read_city, read_city_contents, read_city_files, read_city_within};
+#[cfg(feature = "cli")]
 pub use recognise::is_index_at;
 pub use warning::{CityDefect, CityPlace, CityWarning};

@@ -5,8 +5,9 @@
 pub struct NullPoseLimits {
     /// Null poses that are asked for. Chosen: a chance of 2 % is then known to half of itself.
     pub count: usize,
-    /// Each round has a batch of samples for every null pose that is asked for; there are no more rounds than so many. Chosen: a bound
-    /// for clouds of which few samples give a pose.
+    /// Each round has a batch of samples for every null pose that is asked for; there are no more rounds than so many. Measured on
+    /// a scan of roofs of which few samples give a pose: with four rounds 26 to 41 null poses were found, the rates by chance were hardly known, and the
+    /// right pose had 9 to 13 bits; with sixteen 126 to 137, and 18 to 21 bits, in a tenth of a second more.
     pub most_rounds: u64,
     /// Samples in a batch, of which the best is taken. Measured on 114 wrong answers of generated captures: against single samples they exceed
     /// 2, 4, 6 and 8 bits in 23, 7, 4 and 2 %, as often as the four poses that an answer is chosen from on average allow at most; against the best
@@ -34,7 +35,7 @@ impl Default for NullPoseLimits {
     fn default() -> Self {
         NullPoseLimits {
             count: 256,
-            most_rounds: 4,
+            most_rounds: 16,
             samples: 1,
             ranking_points: 200,
             refining_points: 400,

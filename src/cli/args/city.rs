@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 
-use super::numbers;
+use super::values::numbers;
 use crate::city::{CityLod, CityOptions, CityUnit, CityUp, Lod};
 use crate::format::footprints::FootprintFields;
 

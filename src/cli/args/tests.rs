@@ -1,4 +1,5 @@
 use super::*;
+use crate::place_search::Disc;
 
 #[test]
 fn the_command_line_is_consistent() {

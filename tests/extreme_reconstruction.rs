@@ -111,10 +111,14 @@ proptest! {
             prop_assert!(again.is_ok(), "{}", again.unwrap_err());
             let again = again.unwrap();
             prop_assert_eq!(&again.points, &moved.points);
-            prop_assert_eq!(&again.images[0].name, &moved.images[0].name);
-            prop_assert_eq!(again.images[0].cam_from_sfm_translation, moved.images[0].cam_from_sfm_translation);
-            let turned = again.images[0].cam_from_sfm_rotation.matrix() - moved.images[0].cam_from_sfm_rotation.matrix();
-            prop_assert!(turned.amax() < 1e-12);
+            // An image whose quaternion vanishes in numbers of this size has no pose, and is left out when it is read first.
+            prop_assert_eq!(again.images.len(), moved.images.len());
+            for (again, moved) in again.images.iter().zip(&moved.images) {
+                prop_assert_eq!(&again.name, &moved.name);
+                prop_assert_eq!(again.cam_from_sfm_translation, moved.cam_from_sfm_translation);
+                let turned = again.cam_from_sfm_rotation.matrix() - moved.cam_from_sfm_rotation.matrix();
+                prop_assert!(turned.amax() < 1e-12);
+            }
         }
     }
 }

@@ -57,6 +57,20 @@ fn another_town_is_never_aligned_with() {
     assert_eq!(alignment.verdict, Verdict::Failed, "{}", alignment.reason);
 }
 
+/// Nothing but a start could tell them apart: their scale is unknown.
+#[test]
+fn a_larger_twin_of_the_town_elsewhere_in_the_city_is_told_as_well() {
+    let mut twin = Block::town(4, 3, 11);
+    let corners = twin.houses.iter_mut().flat_map(|house| &mut house.faces).flat_map(|face| &mut face.corners);
+    corners.for_each(|corner| *corner = Point3::from(corner.coords * 1.25 + Vector3::new(400.0, 150.0, 0.0)));
+    let both = Block::new(Block::town(4, 3, 11).houses.into_iter().chain(twin.houses).collect()).with_ground();
+    let alignment = found(&both, &AlignOptions::anywhere(PlacePrior::default()));
+    assert_eq!(alignment.verdict, Verdict::Ambiguous, "{}", alignment.reason);
+    let best = alignment.best_candidate.unwrap().scale;
+    let is_twin = |scale: f64| (scale / best - 1.25).abs() < 0.01 || (best / scale - 1.25).abs() < 0.01;
+    assert!(alignment.alternatives.iter().any(|other| is_twin(other.city_from_sfm.scale)), "{alignment:?}");
+}
+
 #[test]
 fn what_is_known_of_the_place_narrows_the_search_and_a_wrong_place_finds_nothing() {
     let middle = town().middle();

@@ -122,7 +122,7 @@ fn rival(refiner: &PoseRefiner, evaluated_candidate: &EvaluatedCandidate, city_f
         city_from_sfm: Similarity { translation: local.translation + scene.city.model.origin, ..local },
         bits: evaluated_candidate.weighed.bits,
         prior_bits: scene.prior.bits(city_from_level),
-        beyond_start: !scene.prior.reaches(&candidate.refined.city_from_level),
+        beyond_start: scene.prior.rules_out(&candidate.refined.city_from_level),
         by_chance: evaluated_candidate.by_chance,
     }
 }

@@ -136,7 +136,11 @@ impl<'a> Task<'a> {
     }
 
     fn view(&self, upright: &Upright, motion: Motion) -> Result<View<'a>, Cancelled> {
-        let scene = Scene::new(self.city, self.patches, &self.whereabouts.reach, motion, upright, &self.options.limits);
+        let mut scene =
+            Scene::new(self.city, self.patches, &self.whereabouts.reach, motion, upright, &self.options.limits);
+        if !self.whereabouts.is_start() {
+            scene.prior = scene.prior.uniform();
+        }
         let hypotheses = match self.whereabouts.hypotheses(&scene, upright) {
             Some(of_places) => of_places,
             None => search(&scene, self.options.seed, self.observer)?,
@@ -150,17 +154,20 @@ impl<'a> Task<'a> {
     /// that knows everything would leave none to compare with.
     fn null_pose_scene(&self, view: &View) -> Scene<'a> {
         let limits = &self.options.limits;
-        let start = &self.whereabouts.start;
-        let (own, usual) = (*start.sigmas(), StartSigmas::default());
+        let Whereabouts { start, reach, .. } = self.whereabouts;
+        let (own, usual) = (*reach.sigmas(), StartSigmas::default());
         let sigmas = StartSigmas {
-            position_m: own.position_m.max(limits.null_poses.least_reach_m / limits.reach_sigmas),
+            position_m: start.sigmas().position_m.max(limits.null_poses.least_reach_m / limits.reach_sigmas),
             height_m: own.height_m.max(usual.height_m),
             heading_rad: PI,
             tilt_rad: own.tilt_rad.max(usual.tilt_rad),
             log_scale: own.log_scale.max(usual.log_scale),
         };
         let start = start.with_sigmas(sigmas);
-        Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits)
+        let mut scene = Scene::new(self.city, self.patches, &start, view.scene.prior.motion, &view.upright, limits);
+        // Poses of the view are weighed in it, wherever they are.
+        scene.reach = scene.reach.with(&view.scene.reach);
+        scene
     }
 }
 

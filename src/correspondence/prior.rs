@@ -21,7 +21,16 @@ pub enum Vertical {
     Free,
 }
 
-/// A Gaussian about a start, in the level frame.
+/// How likely poses within reach are beforehand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Density {
+    /// About a start, which a pose pays for leaving.
+    Gaussian,
+    /// All alike: nothing speaks for the place about which they are reached.
+    Uniform,
+}
+
+/// What is known of the pose, in the level frame: a Gaussian about a start, or no more than how far poses reach.
 #[derive(Clone, Debug)]
 pub struct Prior {
     /// Where the start puts the level frame's origin.
@@ -32,6 +41,7 @@ pub struct Prior {
     pub vertical: Vertical,
     sigmas: StartSigmas,
     reach_sigmas: f64,
+    density: Density,
     cost_of_sigma_sq: f64,
     least_tilt_rad: f64,
 }
@@ -44,6 +54,11 @@ pub struct Reach {
 }
 
 impl Reach {
+    /// The box about both.
+    pub fn with(&self, other: &Reach) -> Reach {
+        Reach { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+    }
+
     #[inline]
     pub fn contains(&self, p: &Point3<f64>) -> bool {
         (0..3).all(|k| self.low[k] <= p[k] && p[k] <= self.high[k])
@@ -81,9 +96,15 @@ impl Prior {
             vertical,
             sigmas: bounded(&start.sigmas().at_least(LEAST_SPREAD_M, radius_m), &center_in_city, city),
             reach_sigmas: limits.reach_sigmas,
+            density: Density::Gaussian,
             cost_of_sigma_sq: limits.prior_cost,
             least_tilt_rad: limits.least_tilt_rad,
         }
+    }
+
+    /// The same reach, within which no pose is likelier than another: where no start was given.
+    pub fn uniform(self) -> Prior {
+        Prior { density: Density::Uniform, ..self }
     }
 
     /// The pose that is expected.
@@ -98,14 +119,26 @@ impl Prior {
             && self.offsets(city_from_level).iter().all(|o| o.abs() <= self.reach_sigmas)
     }
 
-    /// What leaving the expected pose costs, in the unit of the score.
-    pub fn cost(&self, city_from_level: &Similarity) -> f64 {
-        self.cost_of_sigma_sq * self.offsets(city_from_level).iter().map(|o| o * o).sum::<f64>()
+    /// Whether a start speaks against a pose, by more than it reaches.
+    pub fn rules_out(&self, city_from_level: &Similarity) -> bool {
+        self.density == Density::Gaussian && !self.reaches(city_from_level)
     }
 
-    /// What is known beforehand for a pose against the expected one, bits: the logarithm of a Gaussian's density.
+    /// What leaving the expected pose costs, in the unit of the score.
+    pub fn cost(&self, city_from_level: &Similarity) -> f64 {
+        self.cost_of_sigma_sq * self.sigmas_sq(city_from_level)
+    }
+
+    /// What is known beforehand for a pose against the expected one, bits: the logarithm of the density.
     pub fn bits(&self, city_from_level: &Similarity) -> f64 {
-        -0.5 * std::f64::consts::LOG2_E * self.offsets(city_from_level).iter().map(|o| o * o).sum::<f64>()
+        -0.5 * std::f64::consts::LOG2_E * self.sigmas_sq(city_from_level)
+    }
+
+    fn sigmas_sq(&self, city_from_level: &Similarity) -> f64 {
+        match self.density {
+            Density::Gaussian => self.offsets(city_from_level).iter().map(|o| o * o).sum(),
+            Density::Uniform => 0.0,
+        }
     }
 
     /// How many sigmas a pose is from the expected one: heading, log scale, two horizontal axes, height.

@@ -21,7 +21,7 @@ pub struct Limits {
     pub model_unit_m: f64,
     /// So many sigmas of the cloud's noise are added to it. Derived: 95 % of Gaussian noise.
     pub noise_sigmas: f64,
-    /// Error tau of one plane of the model, in search and refinement alone (docs/mathematics.md 15), and the floor of the start's sigmas.
+    /// Error tau of one plane of the model, in search and refinement alone (docs/mathematics.md 15).
     /// The covariance has errors of its own: [`UncertaintyLimits`]. Measured on the surveyed LoD2 models at hand: some centimetres.
     pub plane_sigma_m: f64,
     /// No point of a photograph is better than this. Chosen.

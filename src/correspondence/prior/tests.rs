@@ -148,3 +148,13 @@ fn no_start_is_surer_than_a_model_stands_in_its_own_coordinate_system() {
     assert!(sure.reaches(&moved(&sure, [1.0, -1.0, 1.0], 0.0, 1.0)));
     assert!(!sure.reaches(&moved(&sure, [1.1, 0.0, 0.0], 0.0, 1.0)));
 }
+
+#[test]
+fn where_no_start_was_given_no_pose_within_reach_is_likelier_and_none_is_ruled_out() {
+    let (gaussian, uniform) = (usual(), usual().uniform());
+    for pose in [off(&gaussian, [0.5, 1.0, -1.5, 2.0, -0.3]), off(&gaussian, [0.0, 0.0, 9.0, 0.0, 0.0])] {
+        assert_eq!((uniform.cost(&pose), uniform.bits(&pose), uniform.rules_out(&pose)), (0.0, 0.0, false));
+        assert_eq!(uniform.reaches(&pose), gaussian.reaches(&pose));
+        assert_eq!(gaussian.rules_out(&pose), !gaussian.reaches(&pose));
+    }
+}

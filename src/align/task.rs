@@ -47,16 +47,39 @@ fn align_patches(
     options: &AlignOptions,
     observer: &dyn Observer,
 ) -> Result<Alignment, Cancelled> {
-    let whereabouts = match Whereabouts::find(city, reconstruction, patches, options, observer)? {
+    let mut whereabouts = match Whereabouts::find(city, reconstruction, patches, options, observer)? {
         Ok(whereabouts) => whereabouts,
         Err(obstacle) => return Ok(report::refused(&obstacle, city, patches, options)),
     };
     check_cancelled(observer)?;
     observer.progress(Stage::City, 0, 0);
-    let task = Task { city, patches, whereabouts: &whereabouts, options, observer };
-    let answer = task.answer()?;
+    let answer_about = |whereabouts: &Whereabouts| Task { city, patches, whereabouts, options, observer }.answer();
+    let mut answer = answer_about(&whereabouts)?;
+    for _ in 0..MOST_MOVES {
+        let Some(moved) = moved_to_answer(&whereabouts, &answer, city, patches, options) else { break };
+        whereabouts = moved;
+        answer = answer_about(&whereabouts)?;
+    }
+    if moved_to_answer(&whereabouts, &answer, city, patches, options).is_some() {
+        answer.decision = answer.decision.between_places();
+    }
     let up_elsewhere = up_elsewhere(&answer.decision, patches, &whereabouts, options);
     Ok(report::tell(answer, patches, up_elsewhere, city, options))
+}
+
+/// Places of a city from which another one is led to, in turn, before the answer is that none is beyond doubt. Chosen: one move is usual.
+const MOST_MOVES: usize = 3;
+
+/// The whereabouts about the place of an answer, where that is another one than the answer was asked at.
+fn moved_to_answer(
+    whereabouts: &Whereabouts,
+    answer: &Outcome,
+    city: &PreparedCity,
+    patches: &Patches,
+    options: &AlignOptions,
+) -> Option<Whereabouts> {
+    let best = answer.found.evidence.rivals.first()?;
+    whereabouts.moved_to(&best.city_from_sfm.relative_to(&city.model.origin), patches, &options.limits)
 }
 
 /// What is to be aligned, and how.

@@ -8,7 +8,7 @@ use crate::correspondence::{Hypotheses, Scene};
 use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
 use crate::limits::Limits;
 use crate::observer::{Cancelled, Observer};
-use crate::place_search::{PlacePrior, PlaceSearch, search_places};
+use crate::place_search::{PlaceCandidate, PlacePrior, PlaceSearch, search_places};
 use crate::planes::{Patches, PreparedCity, UpChoice, Upright, choose_up, up_without_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Ranked;
@@ -82,8 +82,12 @@ impl Whereabouts {
             return Ok(Err(Obstacle::NoPlace(obstacle)));
         }
         places.candidates.iter_mut().for_each(|c| c.start = of_given_scale(&c.start, options.fixed_scale, patches));
-        let Some(best) = places.candidates.first() else { return Ok(Err(Obstacle::NothingFits)) };
-        let start = best.start;
+        Ok(Whereabouts::about_first(places, patches, limits).ok_or(Obstacle::NothingFits))
+    }
+
+    /// Places found, about the first of them: `None` where there is none.
+    fn about_first(places: PlaceSearch, patches: &Patches, limits: &Limits) -> Option<Whereabouts> {
+        let start = places.candidates.first()?.start;
         let reach = start.with_sigmas(over_all(&places, patches, limits.reach_sigmas));
         let mut uprights: Vec<Upright> = Vec::new();
         for candidate in &places.candidates {
@@ -91,7 +95,26 @@ impl Whereabouts {
                 uprights.push(candidate.upright);
             }
         }
-        Ok(Ok(Whereabouts { start, reach, uprights, places: Some(places) }))
+        Some(Whereabouts { start, reach, uprights, places: Some(places) })
+    }
+
+    /// The same places about the one that a pose (to the city's local frame) stands at, where that is not the one already: what chance does depends on the
+    /// place and the scale, and is to be asked where the answer is.
+    pub fn moved_to(&self, pose: &Similarity, patches: &Patches, limits: &Limits) -> Option<Whereabouts> {
+        let mut places = self.places.clone()?;
+        // By all patches, since a place is a heading and a scale as well.
+        let off_m = |candidate: &PlaceCandidate| {
+            let other = candidate.start.city_from_sfm();
+            let centers = patches.patches.iter().map(|patch| &patch.fit.center);
+            centers.map(|center| (other.apply(center) - pose.apply(center)).norm()).sum::<f64>()
+        };
+        let all = &places.candidates;
+        let nearest = (0..all.len()).min_by(|&a, &b| off_m(&all[a]).total_cmp(&off_m(&all[b])))?;
+        if nearest == 0 {
+            return None;
+        }
+        places.candidates.swap(0, nearest);
+        Whereabouts::about_first(places, patches, limits)
     }
 
     /// The poses that walls found under one up, to be made sharp; `None` where a start is to be searched.

@@ -61,6 +61,23 @@ pub struct Decision {
     pub scale_is_denied: bool,
 }
 
+impl Decision {
+    /// Each of several places of a city has more evidence where chance is asked about another: none is beyond doubt.
+    pub fn between_places(self) -> Decision {
+        match self.verdict {
+            Verdict::Aligned | Verdict::Undetermined => Decision {
+                verdict: Verdict::Ambiguous,
+                reason: format!(
+                    "several places of the city explain the cloud, each best by what chance does near another; --near or a start would settle it ({})",
+                    self.reason
+                ),
+                ..self
+            },
+            Verdict::Ambiguous | Verdict::Failed => self,
+        }
+    }
+}
+
 /// What the poses that are compared were chosen from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SearchSpace {

@@ -156,13 +156,8 @@ pub mod internals {
     pub use crate::format::colmap::{Encoding, RigRecord};
     pub use crate::limits::*;
     pub use crate::merging::MergeLimits;
-    pub use crate::place_search::{
-        CityPlan, Disc, HeadingPrior, PlaceCandidate, PlaceObstacle, PlacePrior, PlaceSearch, search_places,
-        search_plan,
-    };
     pub use crate::planes::{
         CityPlanes, Patches, PlaneId, UpChoice, Upright, choose_up, city_planes, patches, up_of_cameras,
-        up_without_start,
     };
     pub use crate::reconstruction::WarningKind;
     pub use crate::robust::{Matrix7, Motion, MotionParameters, NormalEquations, Problem, Random, tukey_weight};

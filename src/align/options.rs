@@ -10,7 +10,7 @@ pub enum Up {
     /// Estimated from walls, floors and cameras.
     #[default]
     Auto,
-    /// Not used: the search turns freely, as far as three sigmas of the start's tilt.
+    /// Not used: the search turns freely, as far as three sigmas of the start's tilt. Without a start as [`Up::Auto`], since walls are told by it.
     None,
     /// Given, in the sfm frame (any length but zero).
     Given(Vector3<f64>),

@@ -9,7 +9,7 @@ use super::plan::file_name;
 use crate::Place;
 use crate::city::{CityModel, PlanBox};
 use crate::format::control::{ControlFile, read_control_points};
-use crate::format::positions::{Frame, PositionsFile, read_positions};
+use crate::format::positions::{Frame, PositionsError, PositionsFile, read_positions};
 use crate::format::read_start;
 use crate::geometry::Start;
 use crate::georeference::{Estimate, GeoreferenceError, agreed, from_control_points, from_geographic, from_positions};
@@ -46,8 +46,7 @@ impl PlaceSources {
             args.points.as_ref().map(|path| anyhow::Ok(Named::new(path, read_control_points(path)?))).transpose()?;
         let near = args.near;
         if start.is_none() && positions.is_none() && points.is_none() && near.is_none() {
-            // Photographs without GPS say nothing, and are no error.
-            positions = args.photos.as_ref().and_then(|photos| named_positions(photos).ok());
+            positions = of_photographs(args.photos.as_deref())?;
         }
         Ok(PlaceSources { start, positions, points, near })
     }
@@ -114,8 +113,7 @@ impl PartPlaces<'_> {
         let named_positions = |path: &PathBuf| anyhow::Ok(Named::new(path, read_positions(path)?));
         let mut positions = args.positions.as_ref().map(named_positions).transpose()?;
         if args.start.is_empty() && positions.is_none() {
-            // Photographs without GPS say nothing, and are no error.
-            positions = args.photos.as_ref().and_then(|photos| named_positions(photos).ok());
+            positions = of_photographs(args.photos.as_deref())?;
         }
         Ok(PartPlaces { starts: starts.collect::<Result<_>>()?, positions, city })
     }
@@ -139,6 +137,16 @@ impl PartPlaces<'_> {
         let Some(estimate) = agreed(estimates)? else { return Ok((Place::default(), told)) };
         told.extend(estimate.warnings);
         Ok((Place::Start(estimate.start), told))
+    }
+}
+
+/// Where photographs say that they were taken; those without GPS say nothing, and are no error.
+fn of_photographs(photos: Option<&Path>) -> Result<Option<Named<PositionsFile>>> {
+    let Some(photos) = photos else { return Ok(None) };
+    match read_positions(photos) {
+        Ok(read) => Ok(Some(Named::new(photos, read))),
+        Err(PositionsError::Content { .. }) => Ok(None),
+        Err(error) => Err(error.into()),
     }
 }
 

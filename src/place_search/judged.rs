@@ -30,12 +30,8 @@ pub struct JudgedPose {
     pub pose: PlanPose,
     /// Of the level frame's origin, the least and the most that most walls allow; city frame (local).
     pub heights_m: [f64; 2],
-    /// Walls against chance in plan alone.
-    pub z_plan: f64,
-    /// ... and with heights and lines of sight.
+    /// Walls, heights and lines of sight against chance, in standard deviations of it.
     pub z: f64,
-    /// Share of the lines of sight that walls block.
-    pub blocked: f64,
 }
 
 impl JudgedPose {
@@ -60,16 +56,13 @@ impl Judge<'_> {
             let common = seen[1].min(wall[1]) - seen[0].max(wall[0]);
             (common / (seen[1] - seen[0]).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
         };
-        let hits = |of: &dyn Fn(&CloudWall, &CityWall) -> f64| -> Vec<f64> {
-            let share = |(wall, met): (&CloudWall, &Met)| {
-                met.iter().flatten().map(|city| of(wall, city)).sum::<f64>() / PLACES.len() as f64
-            };
-            walls.iter().zip(&met).map(share).collect()
+        let hit = |(wall, met): (&CloudWall, &Met)| {
+            met.iter().flatten().map(|city| overlap(wall, city)).sum::<f64>() / PLACES.len() as f64
         };
+        let hits: Vec<f64> = walls.iter().zip(&met).map(hit).collect();
         let blocked = self.sights.blocked(&pose, height_m, self.plan.city, self.limits);
-        let z_plan = self.z(&pose, &weights, &hits(&|_, _| 1.0));
-        let z = self.z(&pose, &weights, &hits(&overlap)) * (1.0 - limits.sight_weight * blocked);
-        Some(JudgedPose { pose, heights_m, z_plan, z, blocked })
+        let z = self.z(&pose, &weights, &hits) * (1.0 - limits.sight_weight * blocked);
+        Some(JudgedPose { pose, heights_m, z })
     }
 
     fn z(&self, pose: &PlanPose, weights: &[f64], hits: &[f64]) -> f64 {

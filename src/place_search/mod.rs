@@ -29,8 +29,7 @@ mod sight;
 mod wall_index;
 mod weights;
 
-pub use city_plan::CityPlan;
 pub use city_walls::{CityWall, walls_of_planes};
 pub use outcome::{PlaceCandidate, PlaceObstacle, PlaceSearch};
 pub use prior::{Disc, HeadingPrior, PlacePrior};
-pub use search::{search_places, search_plan};
+pub use search::search_places;

@@ -27,10 +27,6 @@ pub struct PlaceCandidate {
     pub upright: Upright,
     /// Walls, heights and lines of sight against chance, in standard deviations of it.
     pub z: f64,
-    /// Walls in plan alone.
-    pub z_plan: f64,
-    /// Share of the lines of sight that walls block.
-    pub blocked: f64,
 }
 
 /// Why a place cannot be found.
@@ -86,7 +82,7 @@ impl PlaceCandidate {
             log_scale: limits.log_scale_sigma,
         };
         let start = Start::new(city_from_level * *level_from_sfm, sigmas).ok()?;
-        Some(PlaceCandidate { start, upright: *upright, z: judged.z, z_plan: judged.z_plan, blocked: judged.blocked })
+        Some(PlaceCandidate { start, upright: *upright, z: judged.z })
     }
 }
 

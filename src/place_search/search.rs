@@ -17,7 +17,7 @@ use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
 use crate::planes::{Patches, PreparedCity, Upright};
 
 /// Finds the places in a city where a reconstruction may stand whose scale, heading and position are unknown, or known in part; under each up that
-/// it may have. Who searches for several in one city makes the plan once and asks [`search_plan`].
+/// it may have.
 pub fn search_places(
     city: &PreparedCity,
     patches: &Patches,
@@ -35,21 +35,6 @@ pub fn search_places(
     let plan = CityPlan::new(city, within.as_ref(), limits);
     check_cancelled(observer)?;
     search_views(&plan, patches, &views, prior, limits, observer)
-}
-
-/// The same with a plan at hand.
-pub fn search_plan(
-    plan: &CityPlan,
-    patches: &Patches,
-    uprights: &[Upright],
-    prior: &PlacePrior,
-    limits: &Limits,
-    observer: &dyn Observer,
-) -> Result<PlaceSearch, Cancelled> {
-    match views(patches, uprights, limits) {
-        Ok(views) => search_views(plan, patches, &views, prior, limits, observer),
-        Err(obstacle) => Ok(PlaceSearch::refused(obstacle)),
-    }
 }
 
 /// The walls of the cloud under one up.

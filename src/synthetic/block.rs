@@ -6,7 +6,7 @@ use crate::geometry::{Point3, RayCaster, Rotation3, Vector3};
 use crate::solvers::scene::Random;
 
 /// How far the modelled ground reaches beyond the houses, metres: chosen, farther than any start of the tests is off.
-const GROUND_REACH_M: f64 = 40.0;
+pub(super) const GROUND_REACH_M: f64 = 40.0;
 
 /// From the middle of a block of a town to the next, metres: houses up to 16 m and a street between.
 const TOWN_STEP_M: f64 = 60.0;

@@ -1,6 +1,6 @@
 //! Sites: what stands there, and what the model makes of it.
 
-use super::block::Block;
+use super::block::{Block, GROUND_REACH_M};
 use super::draws::{between, one_of, stream};
 use super::house::{Face, House};
 use super::levels::Levels;
@@ -58,10 +58,17 @@ impl Site {
                 }
             });
         }
-        let model = Block { houses: modelled, ground: None };
-        let model = if levels.ground { model.with_ground() } else { model };
-        Site { built: Block::new(built).with_ground(), modelled: model }
+        let ground = levels.ground.then(|| ground_as_modelled(plan, levels, seed));
+        Site { built: Block::new(built).with_ground(), modelled: Block { houses: modelled, ground } }
     }
+}
+
+/// The ground is surveyed by itself: where the houses stand in the plan, off as any other plane.
+fn ground_as_modelled(plan: &Block, levels: &Levels, seed: u64) -> Face {
+    let mut ground = plan.ground_within(GROUND_REACH_M);
+    let off_m = levels.plane_m * stream(seed, 0).normal();
+    ground.corners.iter_mut().for_each(|corner| corner.z += off_m);
+    ground
 }
 
 /// Whether a wall stands in the open: eaves reach over the street, not into the house next door.
@@ -107,6 +114,16 @@ mod tests {
             assert!(corners(built).iter().zip(&corners(modelled)).all(|(a, b)| (a - b).norm() < 1e-9));
         }
         assert_eq!(site.built.houses.len(), plan.houses.len());
+    }
+
+    #[test]
+    fn the_ground_of_the_model_does_not_follow_the_houses_that_are_off() {
+        let plan = Block::town(8, 8, 2);
+        let height_m = |levels: Levels| Site::new(&plan, &levels, 4).modelled.ground.unwrap().corners[0].z;
+        let right_m = height_m(Levels::none());
+        assert!((height_m(Levels { building_m: 0.25, ..Levels::none() }) - right_m).abs() < 1e-12);
+        let off_m = height_m(Levels { plane_m: 0.03, ..Levels::none() }) - right_m;
+        assert!(off_m != 0.0 && off_m.abs() < 0.12, "{off_m}");
     }
 
     #[test]

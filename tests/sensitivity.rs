@@ -122,7 +122,7 @@ numbers! {
         not:
     }
     uncertainty: uncertainty as UncertaintyLimits {
-        gate_units, cell_m, largest_building_m, square_m, least_walls, least_lever_m, same_building_plane_deg,
+        gate_units, cell_m, least_points, largest_building_m, square_m, least_walls, least_lever_m, same_building_plane_deg,
         same_building_plane_m, building_sigma_m, building_plane_sigma_m, cell_sigma_m, bending_share, building_worth, building_plane_worth,
         cell_worth, bending_worth, walls_sigma_m, lids_sigma_m, roofs_sigma_m, student_dof, reported_sigmas, reported_m, confirmed_times;
         whole: rounds, steps, fewest_left_out;

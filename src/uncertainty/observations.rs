@@ -162,12 +162,17 @@ impl Observations {
         for building_plane in building_planes(rows, limits) {
             self.take_building_plane(&building_plane, kind, upright_sin, limits);
         }
+        if self.building_planes.len() == first {
+            return;
+        }
         let middle = centroid(rows.iter().map(|p| p.row));
         let spread = rows.iter().map(|p| (p.row.place - middle).xy().norm_squared()).sum::<f64>() / rows.len() as f64;
         let lever_m = spread.sqrt().max(limits.least_lever_m);
         self.buildings.push(Building { building_planes: first..self.building_planes.len(), middle, lever_m, kind });
     }
 
+    /// Takes a building plane, unless what lies about it weighs less than a point: strays lie on both sides of any surface, within what is asked of
+    /// them, and so seem to hold it where it is.
     fn take_building_plane(
         &mut self,
         rows: &[&PointPlaneMatch],
@@ -184,6 +189,10 @@ impl Observations {
         self.cells.extend(sorted.chunk_by(|a, b| a.0 == b.0).map(|points| cell(points, sigma_m, student_dof)));
         let cells = &self.cells[first..];
         let total: f64 = cells.iter().map(|p| p.points).sum();
+        if total < limits.least_points {
+            self.cells.truncate(first);
+            return;
+        }
         let mean = |of: &dyn Fn(&SurfaceCell) -> Vector3<f64>| {
             cells.iter().map(|p| of(p) * p.points).sum::<Vector3<f64>>() / total
         };
@@ -264,5 +273,49 @@ fn cell(points: &[([i64; 3], &PointPlaneMatch)], sigma_m: f64, student_dof: f64)
         normal: mean(&|row| row.hit.normal).try_normalize(0.0).unwrap_or(points[0].1.hit.normal),
         across_m,
         points: total,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::Limits;
+    use crate::planes::{Hit, PlaneId};
+
+    /// Points of so much weight each along a wall of plane `plane`, this far before it.
+    fn wall(plane: u32, points: usize, weight: f64, across_m: f64) -> Vec<PointPlaneMatch> {
+        let normal = if plane == 0 { Vector3::x() } else { Vector3::y() };
+        let along = normal.cross(&Vector3::z());
+        let one = |k: usize| PointPlaneMatch {
+            sample_point: k as u32,
+            place: Point3::from(along * (0.5 + k as f64) + normal * across_m + Vector3::z()),
+            hit: Hit { plane: PlaneId(plane), normal, across_m, outside_m: 0.0 },
+            weight,
+        };
+        (0..points).map(one).collect()
+    }
+
+    fn observed(rows: &[PointPlaneMatch]) -> Observations {
+        let limits = Limits::default();
+        let placed: Vec<Placed> = rows.iter().map(|row| Placed { building: (ObjectId(0), [0, 0]), row }).collect();
+        let mut sample = Observations { point_sigma_m: 0.02, ..Observations::default() };
+        sample.take_building(&placed, Kind::Built, limits.upright_sin, &limits.uncertainty);
+        sample
+    }
+
+    #[test]
+    fn strays_that_weigh_less_than_a_point_hold_no_surface() {
+        let seen = wall(0, 30, 1.0, 0.01);
+        let with_strays = observed(&[seen.clone(), wall(1, 4, 0.1, 0.2)].concat());
+        let alone = observed(&seen);
+        assert_eq!(with_strays.building_planes.len(), 1);
+        assert_eq!(with_strays.cells.len(), alone.cells.len());
+        assert_eq!(observed(&[seen, wall(1, 4, 1.0, 0.2)].concat()).building_planes.len(), 2);
+    }
+
+    #[test]
+    fn a_building_of_strays_alone_is_none() {
+        let sample = observed(&wall(0, 4, 0.1, 0.2));
+        assert!(sample.buildings.is_empty() && sample.building_planes.is_empty() && sample.cells.is_empty());
     }
 }

@@ -29,16 +29,16 @@ pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Res
     read_city_files(&[city.to_owned()], terrain, options)
 }
 
-/// As [`read_city`]; of a city that is an index, only the blocks that a box of plan touches.
+/// As [`read_city_files`]; of a city that is an index, only the blocks that a box of plan touches.
 pub fn read_city_within(
-    city: &Path,
+    city: &[PathBuf],
     terrain: &[PathBuf],
     options: &CityOptions,
     within: &PlanBox,
 ) -> Result<CityModel, CityError> {
-    match index_of(&[city.to_owned()], terrain, options)? {
+    match index_of(city, terrain, options)? {
         Some(index) => index.read_within(within),
-        None => read_city(city, terrain, options),
+        None => read_city_files(city, terrain, options),
     }
 }
 

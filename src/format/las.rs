@@ -5,6 +5,7 @@
 mod check;
 mod depth;
 mod packed;
+mod pieces;
 
 use std::io::{BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -12,8 +13,9 @@ use std::path::{Path, PathBuf};
 use las::crs::GeoTiffData;
 
 use self::check::{Packing, check_count, check_head};
-use self::depth::{Shallow, in_place, on_deep_stack};
+use self::depth::{in_place, on_deep_stack};
 use self::packed::check_packed;
+use self::pieces::Pieces;
 use super::file::open_regular;
 use super::ply::{CloudField, FieldKind};
 use super::wkt::{WktCrs, WktUnit, wkt_crs};
@@ -40,6 +42,8 @@ pub struct LasCloud {
     pub fields: Vec<CloudField>,
     /// Bytes of each point that the specification has no name for, which are not carried.
     pub extra_bytes: usize,
+    /// The file has times of its points, which cannot be unpacked safely and are not carried.
+    pub times_left_out: bool,
     /// Points of the classes 7 and 18 (noise), and those that are marked as withheld; left out.
     pub noise: usize,
     pub crs: Option<LasCrs>,
@@ -71,9 +75,8 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
         let header = las::Header::new(BufReader::new(&file)).map_err(|error| fault("header", told(&error)))?;
         check_count(&header, length).map_err(|problem| fault("header", problem))?;
         check_packed(&mut BufReader::new(&file), &header, length).map_err(|problem| fault("points", problem))?;
-        (&file).seek(SeekFrom::Start(0)).map_err(unreadable)?;
-        let reader = las::Reader::new(Shallow::new(file)).map_err(|error| fault("header", told(&error)))?;
-        points(path, reader, &header)
+        let pieces = Pieces::of(file, &header).map_err(|error| fault("header", told(&error)))?;
+        points(path, pieces, &header)
     };
     // The decoder of LAZ panics on some damaged streams, and on some descriptions of them.
     let decoded = match packing {
@@ -83,14 +86,14 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
     decoded.unwrap_or_else(|| Err(fault("points", "the packed points are damaged".into())))
 }
 
-fn points(path: &Path, mut reader: las::Reader, header: &las::Header) -> Result<LasCloud, LasError> {
+fn points(path: &Path, mut pieces: Pieces, header: &las::Header) -> Result<LasCloud, LasError> {
     let fault = |place: String, problem: String| LasError::Malformed { path: path.into(), place, problem };
     let count = header.number_of_points();
-    let mut cloud = Collector::new(header);
+    let mut cloud = Collector::new(header, pieces.have_times());
     let at_once = (BYTES_AT_ONCE / u64::from(header.point_format().len().max(1))).clamp(1, POINTS_AT_ONCE);
     let mut read = 0;
     while read < count {
-        let piece = reader.read_points(at_once).map_err(|error| {
+        let piece = pieces.next(at_once).map_err(|error| {
             fault(format!("point {read} to {} of {count}", (read + at_once).min(count)), told(&error))
         })?;
         if piece.is_empty() {
@@ -122,13 +125,14 @@ struct Collector {
 const NOISE: [u8; 2] = [7, 18];
 
 impl Collector {
-    fn new(header: &las::Header) -> Collector {
+    fn new(header: &las::Header, have_times: bool) -> Collector {
         let version = header.version();
         let cloud = LasCloud {
             version: (version.major, version.minor),
             is_compressed: header.point_format().is_compressed,
             is_copc: header.vlrs().iter().any(|record| record.is_copc_info()),
             extra_bytes: header.point_format().extra_bytes.into(),
+            times_left_out: header.point_format().has_gps_time && !have_times,
             crs: crs(header),
             ..LasCloud::default()
         };
@@ -168,7 +172,7 @@ impl Collector {
         fill(&mut self.returns[0], &mut piece.return_number().map(f64::from));
         fill(&mut self.returns[1], &mut piece.number_of_returns().map(f64::from));
         fill(&mut self.source, &mut piece.point_source_id().map(f64::from));
-        if let Some(times) = piece.gps_time() {
+        if let Some(times) = piece.gps_time().filter(|_| !self.cloud.times_left_out) {
             fill(&mut self.time, &mut { times });
         }
         if let Some(infrared) = piece.nir() {

@@ -19,6 +19,10 @@ pub(super) fn of_las(path: &Path, mut cloud: LasCloud) -> Result<Reconstruction,
         let example = format!("{} bytes of each point beyond its format", cloud.extra_bytes);
         warnings.push(ReconstructionWarning { kind: WarningKind::FieldsDropped, count: 1, example });
     }
+    if cloud.times_left_out {
+        let example = "gps_time, which is not unpacked from layered LAZ (point formats 6 to 10)".into();
+        warnings.push(ReconstructionWarning { kind: WarningKind::FieldsDropped, count: 1, example });
+    }
     if let Some(crs) = &cloud.crs {
         refuse_degrees(path, crs, &cloud.positions)?;
         let (horizontal, vertical) = (crs.understood.horizontal.as_ref(), crs.understood.vertical.as_ref());

@@ -177,6 +177,8 @@ impl Parsed {
                     .map(Content::Surfaces)
                     .map_err(|error| CityError::CityJson { path: of_path(), error: Box::new(error) });
             }
+            #[cfg(feature = "flatcitybuf")]
+            Format::FlatCityBuf => crate::format::flatcitybuf::read_flatcitybuf(&bytes),
             Format::Obj => {
                 return read_obj(&bytes).map(Content::Obj).map_err(|error| CityError::Obj { path: of_path(), error });
             }

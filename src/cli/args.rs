@@ -20,7 +20,7 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
 });
 
 /// The cargo features that this program was built with.
-const FEATURES: [&str; 1] = ["cli"];
+const FEATURES: &[&str] = if cfg!(feature = "flatcitybuf") { &["cli", "flatcitybuf"] } else { &["cli"] };
 
 /// Sets structure-from-motion reconstructions into polyhedral city models.
 #[derive(Parser, Debug)]
@@ -169,6 +169,9 @@ pub struct AlignArgs {
     /// Probability of a wrong pose called aligned that may be taken, above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
+    /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
 }
@@ -218,6 +221,9 @@ pub struct MergeArgs {
     /// Probability of a wrong place called right that may be taken, of a part in the city as well as between parts; above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
+    /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
 }
@@ -312,6 +318,9 @@ pub struct ExportArgs {
     /// replaced by --force, as nothing tells it from a model of your own
     #[arg(long, value_name = "FORMATS", value_enum, value_delimiter = ',')]
     pub format: Vec<FormatArg>,
+    /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
 }

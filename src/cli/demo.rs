@@ -48,6 +48,7 @@ fn align_args(sample: &Path) -> AlignArgs {
         positions: None,
         points: None,
         start: Some(sample.join("start.json")),
+        classes: Vec::new(),
         labels: Some(sample.join("labels")),
         photos: None,
         scale: None,

@@ -3,11 +3,11 @@
 use crate::city::read_city_files;
 use crate::export::{Formats, OutputKind, write_placed};
 use crate::format::{StoredAlignment, read_alignment};
-use crate::reconstruction::read_reconstruction;
+use crate::reconstruction::read_reconstruction_with;
 use anyhow::{Result, ensure};
 
 use super::args::{ExportArgs, FormatArg};
-use super::plan::{CityFiles, existing_sfm, keeps_inputs};
+use super::plan::{CityFiles, existing_sfm, keeps_inputs, sfm_options};
 use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
 
@@ -28,7 +28,7 @@ pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     voice.bar.show("reading the city", 0, 0);
     let city = read_city_files(&files.city, &files.terrain, &files.options)?;
     voice.bar.show("reading the reconstruction", 0, 0);
-    let sfm = read_reconstruction(&args.sfm)?;
+    let sfm = read_reconstruction_with(&args.sfm, &sfm_options(&args.classes))?;
     ensure!(
         !sfm.images.is_empty() || !args.format.contains(&FormatArg::Colmap),
         "the reconstruction is a cloud without images, which COLMAP's formats cannot hold; leave colmap out of --format: {}",

@@ -9,13 +9,13 @@ use crate::imagery::SuperpixelSource;
 use crate::merge::{MergeOptions, MergePart, merge};
 use crate::merging::{JoinOptions, Merge, MergeVerdict, PairSources};
 use crate::planes::PreparedCity;
-use crate::reconstruction::read_reconstruction;
+use crate::reconstruction::read_reconstruction_with;
 use anyhow::{Context, Result, ensure};
 
 use super::args::{EvidenceArg, MergeArgs};
 use super::parts::parts;
 use super::place::PartPlaces;
-use super::plan::{CityFiles, existing_reconstruction, keeps_inputs};
+use super::plan::{CityFiles, existing_reconstruction, keeps_inputs, sfm_options};
 use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
 
@@ -112,7 +112,7 @@ fn read_parts(args: &MergeArgs, city: Option<&CityModel>, session: &Session) -> 
     let sources = city.map(|city| PartPlaces::read(args, city)).transpose()?;
     for (index, (path, name)) in args.parts.iter().zip(unique_names(&args.parts)).enumerate() {
         session.voice.bar.show("reading the parts", index, args.parts.len());
-        let sfm = read_reconstruction(path)?;
+        let sfm = read_reconstruction_with(path, &sfm_options(&args.classes))?;
         session.voice.detail(&format!("{name}: {} points, {} images", sfm.points.len(), sfm.images.len()));
         let place = match &sources {
             None => Place::default(),

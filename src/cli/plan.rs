@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::city::{CityIndex, CityModel, CityOptions, PlanBox, is_index_at, read_city_files, read_city_within};
 use crate::geometry::Vector3;
 use crate::imagery::SuperpixelSource;
+use crate::reconstruction::SfmOptions;
 use crate::{AlignOptions, Place, Up};
 use anyhow::{Context, Result, ensure};
 
@@ -16,6 +17,7 @@ use super::roles::{self, Given, Role};
 pub struct AlignPlan {
     pub city: CityFiles,
     pub sfm: PathBuf,
+    pub sfm_options: SfmOptions,
     pub superpixels: Option<SuperpixelSource>,
     pub place: PlaceSources,
     pub settings: Settings,
@@ -68,6 +70,7 @@ impl AlignPlan {
             settings: Settings::new(args, seed),
             city,
             sfm: args.sfm.clone(),
+            sfm_options: sfm_options(&args.classes),
             superpixels,
             output,
             warnings,
@@ -141,6 +144,12 @@ pub fn file_name(path: &Path) -> String {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     // "." and ".." have no name of their own.
     name.or_else(|| Some(path.canonicalize().ok()?.file_name()?.to_string_lossy().into_owned())).unwrap_or_default()
+}
+
+/// No classes named are all but noise.
+pub fn sfm_options(classes: &[u8]) -> SfmOptions {
+    let options = SfmOptions::default();
+    if classes.is_empty() { options } else { options.with_classes(classes) }
 }
 
 pub fn existing_sfm(sfm: &Path, city: &[PathBuf]) -> Result<()> {

@@ -12,7 +12,7 @@ fn las(units: [Option<(&str, f64)>; 2], is_geographic: bool) -> LasCloud {
 }
 
 fn read(cloud: LasCloud) -> Result<Reconstruction, ReconstructionError> {
-    of_las(Path::new("a/cloud.las"), cloud)
+    of_las(Path::new("a/cloud.las"), cloud, None)
 }
 
 #[test]

@@ -83,7 +83,9 @@ pub use geometry::{Start, StartSigmas};
 pub use georeference::{Estimate, agreed, from_control_points, from_geographic, from_positions};
 pub use place_search::{Disc, HeadingPrior, PlacePrior};
 pub use planes::PreparedCity;
-pub use reconstruction::{Image, Observation, Reconstruction, read_reconstruction};
+pub use reconstruction::{
+    Image, Observation, Reconstruction, SfmOptions, read_reconstruction, read_reconstruction_with,
+};
 
 // Label images and photographs.
 pub use imagery::{LiftedSuperpixels, SuperpixelOptions, SuperpixelSource, lift_superpixels};

@@ -15,8 +15,9 @@ pub(super) struct CityFiles {
 }
 
 /// Endings of files that are looked into; what else lies in a folder (textures, materials, notes) is passed over unread.
-const ENDINGS: [&str; 14] =
-    ["obj", "gltf", "glb", "json", "jsonl", "cityjson", "gml", "xml", "b3dm", "cmpt", "stl", "ply", "shp", "gpkg"];
+const ENDINGS: [&str; 15] = [
+    "obj", "gltf", "glb", "json", "jsonl", "cityjson", "gml", "xml", "b3dm", "cmpt", "stl", "ply", "shp", "gpkg", "fcb",
+];
 
 impl CityFiles {
     /// A file as it is, a folder as the city models in it. Folders within are not entered.

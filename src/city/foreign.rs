@@ -55,7 +55,11 @@ const TABLE: [Foreign; 29] = [
     foreign(b"LASF", "this is a LAS cloud", CLOUD),
     foreign(b"ASTM-E57", "this is an E57 cloud", CLOUD),
     foreign(b"SQLite format 3\0", "this is a database that is no GeoPackage", "get the city as CityJSON or CityGML"),
-    foreign(b"fcb\x01", "this is FlatCityBuf", "convert it to CityJSON (fcb deser)"),
+    foreign(
+        b"fcb\x01",
+        "this is FlatCityBuf, which this program was built without",
+        "convert it to CityJSON (fcb deser IN.fcb OUT.city.jsonl), or build the program with --features flatcitybuf",
+    ),
 ];
 
 /// What a file is instead of a city model, and what to do about it.

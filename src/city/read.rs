@@ -29,16 +29,16 @@ pub fn read_city(city: &Path, terrain: &[PathBuf], options: &CityOptions) -> Res
     read_city_files(&[city.to_owned()], terrain, options)
 }
 
-/// As [`read_city`]; of a city that is an index, only the blocks that a box of plan touches.
+/// As [`read_city_files`]; of a city that is an index, only the blocks that a box of plan touches.
 pub fn read_city_within(
-    city: &Path,
+    city: &[PathBuf],
     terrain: &[PathBuf],
     options: &CityOptions,
     within: &PlanBox,
 ) -> Result<CityModel, CityError> {
-    match index_of(&[city.to_owned()], terrain, options)? {
+    match index_of(city, terrain, options)? {
         Some(index) => index.read_within(within),
-        None => read_city(city, terrain, options),
+        None => read_city_files(city, terrain, options),
     }
 }
 
@@ -177,6 +177,8 @@ impl Parsed {
                     .map(Content::Surfaces)
                     .map_err(|error| CityError::CityJson { path: of_path(), error: Box::new(error) });
             }
+            #[cfg(feature = "flatcitybuf")]
+            Format::FlatCityBuf => crate::format::flatcitybuf::read_flatcitybuf(&bytes),
             Format::Obj => {
                 return read_obj(&bytes).map(Content::Obj).map_err(|error| CityError::Obj { path: of_path(), error });
             }

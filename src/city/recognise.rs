@@ -28,6 +28,8 @@ pub(super) enum Format {
     Tile,
     Shapefile,
     GeoPackage,
+    #[cfg(feature = "flatcitybuf")]
+    FlatCityBuf,
     Stl,
     PlyMesh,
 }
@@ -60,16 +62,18 @@ pub(super) fn recognise(bytes: &[u8], path: &Path) -> Result<Format, CityError> 
     if is_city_index(bytes) {
         return other(("this is an index of a whole city", "give it alone, as CITY"));
     }
-    let by_mark: [(Recogniser, Format); 6] = [
+    let by_mark: &[(Recogniser, Format)] = &[
         (is_glb, Format::Gltf),
         (is_tile, Format::Tile),
         (is_shapefile, Format::Shapefile),
         (is_geopackage, Format::GeoPackage),
+        #[cfg(feature = "flatcitybuf")]
+        (crate::format::flatcitybuf::is_flatcitybuf, Format::FlatCityBuf),
         (is_stl, Format::Stl),
         (is_ply_mesh, Format::PlyMesh),
     ];
-    if let Some((_, format)) = by_mark.into_iter().find(|(is, _)| is(bytes)) {
-        return Ok(format);
+    if let Some((_, format)) = by_mark.iter().find(|(is, _)| is(bytes)) {
+        return Ok(*format);
     }
     if let Some(foreign) = foreign_format(bytes) {
         return other(foreign);

@@ -8,7 +8,7 @@ use crate::georeference::Estimate;
 use crate::imagery::{LiftedSuperpixels, SuperpixelOptions, lift_superpixels};
 use crate::place_search::PlacePrior;
 use crate::planes::PreparedCity;
-use crate::reconstruction::{Reconstruction, read_reconstruction};
+use crate::reconstruction::{Reconstruction, read_reconstruction_with};
 use crate::verdict::Verdict;
 use anyhow::Result;
 
@@ -82,7 +82,7 @@ fn tell_start(inputs: &Inputs, plan: &AlignPlan, session: &Session) -> Result<Ou
 fn read_sfm(plan: &AlignPlan, session: &Session) -> Result<Reconstruction> {
     let voice = &session.voice;
     voice.bar.show("reading the reconstruction", 0, 0);
-    let sfm = read_reconstruction(&plan.sfm)?;
+    let sfm = read_reconstruction_with(&plan.sfm, &plan.sfm_options)?;
     voice.detail(&format!("reconstruction: {} points, {} images", sfm.points.len(), sfm.images.len()));
     Ok(sfm)
 }

@@ -20,7 +20,7 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
 });
 
 /// The cargo features that this program was built with.
-const FEATURES: [&str; 1] = ["cli"];
+const FEATURES: &[&str] = if cfg!(feature = "flatcitybuf") { &["cli", "flatcitybuf"] } else { &["cli"] };
 
 /// Sets structure-from-motion reconstructions into polyhedral city models.
 #[derive(Parser, Debug)]
@@ -104,6 +104,7 @@ pub struct Common {
 #[command(after_help = "Examples:\n  \
     cityweld align city.obj sfm/ --start start.json --labels labels/ -o out\n  \
     cityweld align city.glb cloud.ply --terrain ground.obj --start start.json -o out\n  \
+    cityweld align north.city.json south.city.json sfm/ -o out      (several files, one city; the last is the reconstruction)\n  \
     cityweld align city.obj sfm/ --positions photos/ --crs EPSG:28992 -o out\n  \
     cityweld align city.city.json sfm/ -o out                       (anywhere in the city)\n  \
     cityweld align city.city.json sfm/ --near 85120,447250,300 -o out\n  \
@@ -118,9 +119,12 @@ pub struct Common {
     alignment.json of an earlier run is a start, too: by its transform, or else its best_candidate.\n\n\
     Exit status: 0 aligned; 1 any other verdict (alignment.json says why).")]
 pub struct AlignArgs {
-    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index (.cwi)
-    pub city: PathBuf,
-    /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index
+    /// (.cwi); several files or folders are one city
+    #[arg(value_name = "CITY", num_args = 1.., required = true)]
+    pub city: Vec<PathBuf>,
+    /// Reconstruction, after CITY: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
+    #[arg(value_name = "SFM", required = true)]
     pub sfm: PathBuf,
     /// Folder to make; must not exist (see --force)
     #[arg(short, long, value_name = "OUT", required_unless_present = "dry_run")]
@@ -165,6 +169,9 @@ pub struct AlignArgs {
     /// Probability of a wrong pose called aligned that may be taken, above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
+    /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
 }
@@ -200,9 +207,10 @@ pub struct MergeArgs {
     /// superpixels; or those planes alone, to study them
     #[arg(long, value_name = "WHICH", value_enum, default_value_t = EvidenceArg::All)]
     pub evidence: EvidenceArg,
-    /// City model in which the parts meet (as CITY of `align`); without --start and --positions each part is searched in the whole of it
+    /// City model in which the parts meet (as CITY of `align`), once for every file or folder of it; without --start and --positions each part is
+    /// searched in the whole of it
     #[arg(long, value_name = "CITY")]
-    pub city: Option<PathBuf>,
+    pub city: Vec<PathBuf>,
     /// Coarse place of a part in the city, JSON (see `align --help`), or its alignment.json; once for every part, in their order
     #[arg(long, value_name = "FILE")]
     pub start: Vec<PathBuf>,
@@ -213,6 +221,9 @@ pub struct MergeArgs {
     /// Probability of a wrong place called right that may be taken, of a part in the city as well as between parts; above 0 and below 1
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
+    /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
 }
@@ -242,8 +253,9 @@ pub struct IndexArgs {
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Example:\n  cityweld planes city.obj --terrain ground.obj -o planes.glb")]
 pub struct PlanesArgs {
-    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index (.cwi)
-    pub city: PathBuf,
+    /// City model, as CITY of `align`; several files or folders are one city
+    #[arg(value_name = "CITY", num_args = 1.., required = true)]
+    pub city: Vec<PathBuf>,
     /// File to write: .glb (coloured by plane) or .json
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -289,9 +301,12 @@ pub struct ManArgs {
     after_help = "Example:\n  cityweld export city.obj sfm/ --alignment out/alignment.json --format glb,ply -o again"
 )]
 pub struct ExportArgs {
-    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index (.cwi)
-    pub city: PathBuf,
-    /// Reconstruction: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
+    /// City model: CityJSON, CityGML, OBJ, glTF, 3D Tiles, STL, PLY with faces, footprints (Shapefile, GeoPackage), a folder of tiles, or an index
+    /// (.cwi); several files or folders are one city
+    #[arg(value_name = "CITY", num_args = 1.., required = true)]
+    pub city: Vec<PathBuf>,
+    /// Reconstruction, after CITY: a COLMAP folder; a cloud (PLY, LAS, LAZ, E57); what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote
+    #[arg(value_name = "SFM", required = true)]
     pub sfm: PathBuf,
     /// alignment.json whose transform (or else best_candidate) is used
     #[arg(long, value_name = "FILE")]
@@ -303,6 +318,9 @@ pub struct ExportArgs {
     /// replaced by --force, as nothing tells it from a model of your own
     #[arg(long, value_name = "FORMATS", value_enum, value_delimiter = ',')]
     pub format: Vec<FormatArg>,
+    /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
 }

@@ -40,7 +40,7 @@ fn unpack(output: &Path) -> Result<()> {
 fn align_args(sample: &Path) -> AlignArgs {
     AlignArgs {
         near: None,
-        city: sample.join("city.obj"),
+        city: vec![sample.join("city.obj")],
         sfm: sample.join("sfm"),
         // Within the sample, so that it never is a place that exists: the true one is set aside already.
         output: Some(sample.join("out")),
@@ -48,6 +48,7 @@ fn align_args(sample: &Path) -> AlignArgs {
         positions: None,
         points: None,
         start: Some(sample.join("start.json")),
+        classes: Vec::new(),
         labels: Some(sample.join("labels")),
         photos: None,
         scale: None,

@@ -1,34 +1,34 @@
 //! `cityweld export`
 
-use crate::city::read_city;
+use crate::city::read_city_files;
 use crate::export::{Formats, OutputKind, write_placed};
 use crate::format::{StoredAlignment, read_alignment};
-use crate::reconstruction::read_reconstruction;
+use crate::reconstruction::read_reconstruction_with;
 use anyhow::{Result, ensure};
 
 use super::args::{ExportArgs, FormatArg};
-use super::plan::{CityFiles, existing_sfm, keeps_inputs};
+use super::plan::{CityFiles, existing_sfm, keeps_inputs, sfm_options};
 use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
 
 pub fn run(args: &ExportArgs, session: &Session) -> Result<Outcome> {
     existing_sfm(&args.sfm, &args.city)?;
-    let mut given: Vec<Given<'_>> =
-        vec![(Role::City, &args.city), (Role::Sfm, &args.sfm), (Role::Alignment, &args.alignment)];
+    let mut given: Vec<Given<'_>> = args.city.iter().map(|path| (Role::City, path.as_path())).collect();
+    given.extend([(Role::Sfm, args.sfm.as_path()), (Role::Alignment, &args.alignment)]);
     given.extend(args.city_options.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
     roles::check("export", &given)?;
     let files = CityFiles::new(&args.city, &args.city_options)?;
-    let mut inputs = vec![&args.city, &args.sfm, &args.alignment];
-    inputs.extend(&args.city_options.terrain);
+    let inputs: Vec<_> =
+        args.city.iter().chain([&args.sfm, &args.alignment]).chain(&args.city_options.terrain).collect();
     keeps_inputs(&args.output, &inputs)?;
     let stored = read_alignment(&args.alignment)?;
     let output = session.begin(&args.output, OutputKind::Folder)?;
     let voice = &session.voice;
 
     voice.bar.show("reading the city", 0, 0);
-    let city = read_city(&files.city, &files.terrain, &files.options)?;
+    let city = read_city_files(&files.city, &files.terrain, &files.options)?;
     voice.bar.show("reading the reconstruction", 0, 0);
-    let sfm = read_reconstruction(&args.sfm)?;
+    let sfm = read_reconstruction_with(&args.sfm, &sfm_options(&args.classes))?;
     ensure!(
         !sfm.images.is_empty() || !args.format.contains(&FormatArg::Colmap),
         "the reconstruction is a cloud without images, which COLMAP's formats cannot hold; leave colmap out of --format: {}",

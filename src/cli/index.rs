@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 
 use super::args::IndexArgs;
-use super::plan::{existing_city, file_name, keeps_inputs};
+use super::plan::{CityFiles, file_name, keeps_inputs};
 use super::roles::{self, Role};
 use super::{Outcome, Session, summary};
 use crate::city::{CityIndex, is_index_at};
@@ -17,17 +17,16 @@ pub fn run(args: &IndexArgs, session: &Session) -> Result<Outcome> {
     let given = args.city.iter().map(|path| (Role::City, path.as_path()));
     let given = given.chain(terrain.iter().map(|path| (Role::Terrain, path.as_path())));
     roles::check("index", &given.collect::<Vec<_>>())?;
-    for path in &args.city {
-        existing_city(path, "the city")?;
+    let files = CityFiles::new(&args.city, &args.city_options)?;
+    for path in &files.city {
         ensure!(!is_index_at(path), "this is an index already, give the city's own files: {}", path.display());
     }
-    terrain.iter().try_for_each(|path| existing_city(path, "the terrain"))?;
     keeps_inputs(&args.output, &args.city.iter().chain(terrain).collect::<Vec<_>>())?;
     let output = session.begin(&args.output, OutputKind::File)?;
     let voice = &session.voice;
 
     voice.bar.show("reading the city", 0, 0);
-    write_city_index(&args.city, terrain, &args.city_options.options(), output.path(), &voice.bar)?;
+    write_city_index(&files.city, &files.terrain, &files.options, output.path(), &voice.bar)?;
     output.commit()?;
     tell(&args.output, args, session)
 }

@@ -3,19 +3,19 @@
 use std::path::PathBuf;
 
 use crate::Place;
-use crate::city::{CityModel, read_city};
+use crate::city::{CityModel, read_city_files};
 use crate::export::{OutputKind, merge_report, write_merge};
 use crate::imagery::SuperpixelSource;
 use crate::merge::{MergeOptions, MergePart, merge};
 use crate::merging::{JoinOptions, Merge, MergeVerdict, PairSources};
 use crate::planes::PreparedCity;
-use crate::reconstruction::read_reconstruction;
+use crate::reconstruction::read_reconstruction_with;
 use anyhow::{Context, Result, ensure};
 
 use super::args::{EvidenceArg, MergeArgs};
 use super::parts::parts;
 use super::place::PartPlaces;
-use super::plan::{CityFiles, existing_reconstruction, keeps_inputs};
+use super::plan::{CityFiles, existing_reconstruction, keeps_inputs, sfm_options};
 use super::roles::{self, Given, Role};
 use super::{Outcome, Session, summary};
 
@@ -70,7 +70,7 @@ fn check(args: &MergeArgs) -> Result<()> {
         args.evidence == EvidenceArg::All || superpixel_source(args).is_some(),
         "--evidence planes needs superpixels; give their label images with --labels, or the photographs with --photos"
     );
-    if args.city.is_none() {
+    if args.city.is_empty() {
         ensure!(args.start.is_empty(), "--start says where the parts are in a city; give the city with --city");
         ensure!(args.positions.is_none(), "--positions says where the parts are in a city; give the city with --city");
         let option = args.city_options.first_given();
@@ -98,10 +98,12 @@ fn paths_with_roles(args: &MergeArgs) -> Vec<Given<'_>> {
 }
 
 fn read_the_city(args: &MergeArgs, session: &Session) -> Result<Option<PreparedCity>> {
-    let Some(city) = &args.city else { return Ok(None) };
+    if args.city.is_empty() {
+        return Ok(None);
+    }
     session.voice.bar.show("reading the city", 0, 0);
-    let files = CityFiles::new(city, &args.city_options)?;
-    Ok(Some(PreparedCity::new(read_city(&files.city, &files.terrain, &files.options)?)))
+    let files = CityFiles::new(&args.city, &args.city_options)?;
+    Ok(Some(PreparedCity::new(read_city_files(&files.city, &files.terrain, &files.options)?)))
 }
 
 /// The parts, and what is to be said of their places.
@@ -110,7 +112,7 @@ fn read_parts(args: &MergeArgs, city: Option<&CityModel>, session: &Session) -> 
     let sources = city.map(|city| PartPlaces::read(args, city)).transpose()?;
     for (index, (path, name)) in args.parts.iter().zip(unique_names(&args.parts)).enumerate() {
         session.voice.bar.show("reading the parts", index, args.parts.len());
-        let sfm = read_reconstruction(path)?;
+        let sfm = read_reconstruction_with(path, &sfm_options(&args.classes))?;
         session.voice.detail(&format!("{name}: {} points, {} images", sfm.points.len(), sfm.images.len()));
         let place = match &sources {
             None => Place::default(),

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::city::{CityIndex, CityModel, CityOptions, PlanBox, is_index_at, read_city, read_city_within};
+use crate::city::{CityIndex, CityModel, CityOptions, PlanBox, is_index_at, read_city_files, read_city_within};
 use crate::geometry::Vector3;
 use crate::imagery::SuperpixelSource;
+use crate::reconstruction::SfmOptions;
 use crate::{AlignOptions, Place, Up};
 use anyhow::{Context, Result, ensure};
 
@@ -16,6 +17,7 @@ use super::roles::{self, Given, Role};
 pub struct AlignPlan {
     pub city: CityFiles,
     pub sfm: PathBuf,
+    pub sfm_options: SfmOptions,
     pub superpixels: Option<SuperpixelSource>,
     pub place: PlaceSources,
     pub settings: Settings,
@@ -35,7 +37,8 @@ pub struct Settings {
 
 /// The files of a city model.
 pub struct CityFiles {
-    pub city: PathBuf,
+    /// Files and folders that are one city.
+    pub city: Vec<PathBuf>,
     pub terrain: Vec<PathBuf>,
     pub options: CityOptions,
 }
@@ -43,7 +46,8 @@ pub struct CityFiles {
 impl AlignPlan {
     pub fn new(args: &AlignArgs, seed: u64) -> Result<AlignPlan> {
         existing_sfm(&args.sfm, &args.city)?;
-        let mut given: Vec<Given<'_>> = vec![(Role::City, &args.city), (Role::Sfm, &args.sfm)];
+        let mut given: Vec<Given<'_>> = args.city.iter().map(|path| (Role::City, path.as_path())).collect();
+        given.push((Role::Sfm, &args.sfm));
         given.extend(args.city_options.terrain.iter().map(|path| (Role::Terrain, path.as_path())));
         given.extend(args.labels.iter().map(|path| (Role::Labels, path.as_path())));
         given.extend(args.photos.iter().map(|path| (Role::Photos, path.as_path())));
@@ -54,7 +58,7 @@ impl AlignPlan {
         let city = CityFiles::new(&args.city, &args.city_options)?;
         let mut warnings = Vec::new();
         let superpixels = superpixel_source(args, &mut warnings)?;
-        let mut inputs = vec![&args.city, &args.sfm];
+        let mut inputs: Vec<&PathBuf> = args.city.iter().chain([&args.sfm]).collect();
         inputs.extend(args.city_options.terrain.iter().chain(&args.start).chain(&args.labels).chain(&args.photos));
         inputs.extend(args.positions.iter().chain(&args.points));
         let output = args.output.clone().filter(|_| !args.dry_run);
@@ -66,6 +70,7 @@ impl AlignPlan {
             settings: Settings::new(args, seed),
             city,
             sfm: args.sfm.clone(),
+            sfm_options: sfm_options(&args.classes),
             superpixels,
             output,
             warnings,
@@ -98,31 +103,39 @@ impl Settings {
 }
 
 impl CityFiles {
-    pub fn new(city: &Path, args: &CityArgs) -> Result<CityFiles> {
-        existing_city(city, "the city")?;
+    pub fn new(city: &[PathBuf], args: &CityArgs) -> Result<CityFiles> {
+        for (i, path) in city.iter().enumerate() {
+            existing_city(path, "the city")?;
+            for earlier in &city[..i] {
+                ensure!(!holds(earlier, path) && !holds(path, earlier), given_twice(earlier, path));
+            }
+        }
         for path in &args.terrain {
             existing_city(path, "the terrain")?;
-            ensure!(!same(path, city), "the city is given again as terrain, leave one out: {}", path.display());
+            let is_city = city.iter().any(|city| same(path, city));
+            ensure!(!is_city, "the city is given again as terrain, leave one out: {}", path.display());
         }
         Ok(CityFiles { city: city.into(), terrain: args.terrain.clone(), options: args.options() })
     }
 
     /// The frame of a city that is an index, without anything in it.
     pub fn frame_of_index(&self) -> Result<Option<CityModel>> {
-        is_index_at(&self.city).then(|| Ok(CityIndex::open(&self.city)?.read_frame()?)).transpose()
+        // Beside other files an index is refused when the city is read.
+        let [alone] = self.city.as_slice() else { return Ok(None) };
+        is_index_at(alone).then(|| Ok(CityIndex::open(alone)?.read_frame()?)).transpose()
     }
 
     /// Reads the city; where it is an index, only what matters of it.
     pub fn read(&self, within: Option<&PlanBox>) -> Result<CityModel> {
         Ok(match within {
             Some(within) => read_city_within(&self.city, &self.terrain, &self.options, within)?,
-            None => read_city(&self.city, &self.terrain, &self.options)?,
+            None => read_city_files(&self.city, &self.terrain, &self.options)?,
         })
     }
 
     /// City and terrain, by their names alone.
     pub fn names(&self) -> Vec<String> {
-        std::iter::once(&self.city).chain(&self.terrain).map(|path| file_name(path)).collect()
+        self.city.iter().chain(&self.terrain).map(|path| file_name(path)).collect()
     }
 }
 
@@ -133,10 +146,16 @@ pub fn file_name(path: &Path) -> String {
     name.or_else(|| Some(path.canonicalize().ok()?.file_name()?.to_string_lossy().into_owned())).unwrap_or_default()
 }
 
-pub fn existing_sfm(sfm: &Path, city: &Path) -> Result<()> {
+/// No classes named are all but noise.
+pub fn sfm_options(classes: &[u8]) -> SfmOptions {
+    let options = SfmOptions::default();
+    if classes.is_empty() { options } else { options.with_classes(classes) }
+}
+
+pub fn existing_sfm(sfm: &Path, city: &[PathBuf]) -> Result<()> {
     let place = sfm.display();
     existing_reconstruction(sfm, "the reconstruction")?;
-    ensure!(!same(sfm, city), "city and reconstruction are the same file: {place}");
+    ensure!(!city.iter().any(|city| same(sfm, city)), "city and reconstruction are the same file: {place}");
     Ok(())
 }
 
@@ -191,12 +210,22 @@ fn superpixel_source(args: &AlignArgs, warnings: &mut Vec<String>) -> Result<Opt
 }
 
 /// A file, or a folder of them, whatever is in it; a pipe might never end.
-pub fn existing_city(path: &Path, what: &str) -> Result<()> {
+fn existing_city(path: &Path, what: &str) -> Result<()> {
     let place = path.display();
     let found = std::fs::metadata(path).with_context(|| format!("cannot read {what}: {place}"))?;
     let is_one = found.is_dir() || found.is_file();
     ensure!(is_one, "{what} is a pipe or a device, expected a file or a folder of files: {place}");
     Ok(())
+}
+
+/// Whether `inner` is read where `outer` is: the same path, or a file in that folder (folders within are not entered).
+fn holds(outer: &Path, inner: &Path) -> bool {
+    let parent = || Some(inner.canonicalize().ok()?.parent()?.to_owned());
+    same(outer, inner) || inner.is_file() && parent().is_some_and(|parent| same(outer, &parent))
+}
+
+fn given_twice(earlier: &Path, path: &Path) -> String {
+    format!("a file of the city is given twice, leave one out: {} and {}", earlier.display(), path.display())
 }
 
 fn same(a: &Path, b: &Path) -> bool {

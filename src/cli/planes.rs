@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::city::{CityError, CityModel, read_city, read_city_contents};
+use crate::city::{CityError, CityModel, read_city_contents, read_city_files};
 use crate::export::{Output, OutputKind, planes_report, write_planes_glb};
 use crate::planes::city_planes;
 use anyhow::{Context, Result, bail};
@@ -21,7 +21,8 @@ enum Form {
 
 pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
     let terrain = args.city_options.terrain.iter().map(|path| (Role::Terrain, path.as_path()));
-    roles::check("planes", &std::iter::once((Role::City, args.city.as_path())).chain(terrain).collect::<Vec<_>>())?;
+    let city = args.city.iter().map(|path| (Role::City, path.as_path()));
+    roles::check("planes", &city.chain(terrain).collect::<Vec<_>>())?;
     let files = CityFiles::new(&args.city, &args.city_options)?;
     let output = args.output.as_deref().map(|path| begin(path, args, session)).transpose()?;
     let voice = &session.voice;
@@ -56,11 +57,11 @@ pub fn run(args: &PlanesArgs, session: &Session) -> Result<Outcome> {
 /// Reads the city. One whose format names its objects, and whose objects are all without polygons, is shown as empty where nothing is
 /// to be written.
 fn read(files: &CityFiles, args: &PlanesArgs, voice: &Voice) -> Result<CityModel> {
-    let error = match read_city(&files.city, &files.terrain, &files.options) {
+    let error = match read_city_files(&files.city, &files.terrain, &files.options) {
         Err(error @ CityError::NoFaces { .. }) if args.output.is_none() => error,
         city => return Ok(city?),
     };
-    let contents = read_city_contents(std::slice::from_ref(&files.city), &files.options)?;
+    let contents = read_city_contents(&files.city, &files.options)?;
     if !contents.iter().any(|(_, contents)| contents.objects > 0 && contents.polygons.is_empty()) {
         return Err(error.into());
     }
@@ -75,7 +76,7 @@ fn begin(path: &Path, args: &PlanesArgs, session: &Session) -> Result<(Output, F
         Some("json") => Form::Json,
         _ => bail!("the output's name ends in neither .glb nor .json, so its form is unknown: {}", path.display()),
     };
-    let inputs: Vec<_> = std::iter::once(&args.city).chain(&args.city_options.terrain).collect();
+    let inputs: Vec<_> = args.city.iter().chain(&args.city_options.terrain).collect();
     keeps_inputs(path, &inputs)?;
     let output = session.begin(path, OutputKind::File)?;
     Ok((output, form))

@@ -5,15 +5,18 @@
 mod check;
 mod depth;
 mod packed;
+mod pieces;
 
+use std::collections::BTreeSet;
 use std::io::{BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use las::crs::GeoTiffData;
 
 use self::check::{Packing, check_count, check_head};
-use self::depth::{Shallow, in_place, on_deep_stack};
+use self::depth::{in_place, on_deep_stack};
 use self::packed::check_packed;
+use self::pieces::Pieces;
 use super::file::open_regular;
 use super::ply::{CloudField, FieldKind};
 use super::wkt::{WktCrs, WktUnit, wkt_crs};
@@ -40,8 +43,13 @@ pub struct LasCloud {
     pub fields: Vec<CloudField>,
     /// Bytes of each point that the specification has no name for, which are not carried.
     pub extra_bytes: usize,
-    /// Points of the classes 7 and 18 (noise), and those that are marked as withheld; left out.
+    /// The file has times of its points, which cannot be unpacked safely and are not carried.
+    pub times_left_out: bool,
+    /// Points of the classes 7 and 18 (noise) where no classes were asked for, and those that are marked as withheld; left out.
     pub noise: usize,
+    /// Points of other classes than were asked for, left out; and the classes that there are.
+    pub of_other_classes: usize,
+    pub classes: BTreeSet<u8>,
     pub crs: Option<LasCrs>,
 }
 
@@ -60,7 +68,8 @@ pub fn is_las(start: &[u8]) -> bool {
 const POINTS_AT_ONCE: u64 = 1 << 16;
 const BYTES_AT_ONCE: u64 = 4 << 20;
 
-pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
+/// `classes`: those that are kept; where `None`, all but noise.
+pub fn read_las(path: &Path, classes: Option<&[u8]>) -> Result<LasCloud, LasError> {
     let unreadable = |source| LasError::Unreadable { path: path.into(), source };
     let fault = |place: &str, problem: String| LasError::Malformed { path: path.into(), place: place.into(), problem };
     let mut file = open_regular(path).map_err(unreadable)?;
@@ -71,9 +80,8 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
         let header = las::Header::new(BufReader::new(&file)).map_err(|error| fault("header", told(&error)))?;
         check_count(&header, length).map_err(|problem| fault("header", problem))?;
         check_packed(&mut BufReader::new(&file), &header, length).map_err(|problem| fault("points", problem))?;
-        (&file).seek(SeekFrom::Start(0)).map_err(unreadable)?;
-        let reader = las::Reader::new(Shallow::new(file)).map_err(|error| fault("header", told(&error)))?;
-        points(path, reader, &header)
+        let pieces = Pieces::of(file, &header).map_err(|error| fault("header", told(&error)))?;
+        points(path, pieces, &header, classes)
     };
     // The decoder of LAZ panics on some damaged streams, and on some descriptions of them.
     let decoded = match packing {
@@ -83,14 +91,14 @@ pub fn read_las(path: &Path) -> Result<LasCloud, LasError> {
     decoded.unwrap_or_else(|| Err(fault("points", "the packed points are damaged".into())))
 }
 
-fn points(path: &Path, mut reader: las::Reader, header: &las::Header) -> Result<LasCloud, LasError> {
+fn points(path: &Path, mut pieces: Pieces, header: &las::Header, classes: Option<&[u8]>) -> Result<LasCloud, LasError> {
     let fault = |place: String, problem: String| LasError::Malformed { path: path.into(), place, problem };
     let count = header.number_of_points();
-    let mut cloud = Collector::new(header);
+    let mut cloud = Collector::new(header, pieces.have_times(), classes);
     let at_once = (BYTES_AT_ONCE / u64::from(header.point_format().len().max(1))).clamp(1, POINTS_AT_ONCE);
     let mut read = 0;
     while read < count {
-        let piece = reader.read_points(at_once).map_err(|error| {
+        let piece = pieces.next(at_once).map_err(|error| {
             fault(format!("point {read} to {} of {count}", (read + at_once).min(count)), told(&error))
         })?;
         if piece.is_empty() {
@@ -106,9 +114,10 @@ fn told(error: &las::Error) -> String {
     super::escaped(&error.to_string()).to_string()
 }
 
-/// Gathers points, without the noise.
-struct Collector {
+/// Gathers points, without the noise or those of other classes than are wanted.
+struct Collector<'a> {
     cloud: LasCloud,
+    wanted: Option<&'a [u8]>,
     colors: Vec<[u16; 3]>,
     intensity: CloudField,
     class: CloudField,
@@ -121,19 +130,21 @@ struct Collector {
 /// Classes of noise: below, and above.
 const NOISE: [u8; 2] = [7, 18];
 
-impl Collector {
-    fn new(header: &las::Header) -> Collector {
+impl Collector<'_> {
+    fn new<'a>(header: &las::Header, have_times: bool, wanted: Option<&'a [u8]>) -> Collector<'a> {
         let version = header.version();
         let cloud = LasCloud {
             version: (version.major, version.minor),
             is_compressed: header.point_format().is_compressed,
             is_copc: header.vlrs().iter().any(|record| record.is_copc_info()),
             extra_bytes: header.point_format().extra_bytes.into(),
+            times_left_out: header.point_format().has_gps_time && !have_times,
             crs: crs(header),
             ..LasCloud::default()
         };
         Collector {
             cloud,
+            wanted,
             colors: Vec::new(),
             intensity: CloudField::new("intensity", FieldKind::U16),
             class: CloudField::new("classification", FieldKind::U8),
@@ -149,12 +160,16 @@ impl Collector {
         let records = piece.raw_bytes().chunks_exact(piece.record_len());
         // The flags of withheld points: bit 7 of the class before version 1.4, bit 2 of the flags after.
         let withheld = records.map(|record| if is_extended { record[15] & 4 != 0 } else { record[15] & 0x80 != 0 });
-        let keep: Vec<bool> = piece
-            .classification()
-            .zip(withheld)
-            .map(|(class, withheld)| !withheld && !NOISE.contains(&class))
-            .collect();
-        self.cloud.noise += keep.iter().filter(|keep| !**keep).count();
+        let wanted = self.wanted;
+        let cloud = &mut self.cloud;
+        let mut keeps = |(class, withheld): (u8, bool)| {
+            cloud.classes.insert(class);
+            let is_wanted = wanted.map_or(!NOISE.contains(&class), |wanted| wanted.contains(&class));
+            cloud.noise += usize::from(withheld || (wanted.is_none() && !is_wanted));
+            cloud.of_other_classes += usize::from(!withheld && wanted.is_some() && !is_wanted);
+            !withheld && is_wanted
+        };
+        let keep: Vec<bool> = piece.classification().zip(withheld).map(&mut keeps).collect();
         let places = piece.x().zip(piece.y()).zip(piece.z()).map(|((x, y), z)| [x, y, z]);
         self.cloud.positions.extend(kept(places, &keep));
         if let Some(colors) = piece.rgb() {
@@ -168,7 +183,7 @@ impl Collector {
         fill(&mut self.returns[0], &mut piece.return_number().map(f64::from));
         fill(&mut self.returns[1], &mut piece.number_of_returns().map(f64::from));
         fill(&mut self.source, &mut piece.point_source_id().map(f64::from));
-        if let Some(times) = piece.gps_time() {
+        if let Some(times) = piece.gps_time().filter(|_| !self.cloud.times_left_out) {
             fill(&mut self.time, &mut { times });
         }
         if let Some(infrared) = piece.nir() {

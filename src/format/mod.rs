@@ -18,6 +18,8 @@ pub mod citygml;
 pub mod colmap;
 pub mod e57;
 pub mod file;
+#[cfg(feature = "flatcitybuf")]
+pub mod flatcitybuf;
 mod escape;
 pub mod footprints;
 pub mod gltf;

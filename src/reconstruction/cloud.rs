@@ -9,14 +9,32 @@ use crate::format::las::{LasCloud, LasCrs};
 use crate::format::wkt::WktUnit;
 use crate::geometry::Point3;
 
-pub(super) fn of_las(path: &Path, mut cloud: LasCloud) -> Result<Reconstruction, ReconstructionError> {
+/// `classes`: those that were asked for.
+pub(super) fn of_las(
+    path: &Path,
+    mut cloud: LasCloud,
+    classes: Option<&[u8]>,
+) -> Result<Reconstruction, ReconstructionError> {
     let mut warnings = Vec::new();
+    if let Some(wanted) = classes.filter(|_| cloud.positions.is_empty()) {
+        let (wanted, found) = (listed(wanted), listed(&cloud.classes));
+        return Err(ReconstructionError::NoPointsOfClasses { path: path.into(), wanted, found });
+    }
+    if cloud.of_other_classes > 0 {
+        let example = format!("in {}", file_name(path));
+        let count = cloud.of_other_classes;
+        warnings.push(ReconstructionWarning { kind: WarningKind::OtherClassesLeftOut, count, example });
+    }
     if cloud.noise > 0 {
         let example = format!("in {}", file_name(path));
         warnings.push(ReconstructionWarning { kind: WarningKind::NoiseLeftOut, count: cloud.noise, example });
     }
     if cloud.extra_bytes > 0 {
         let example = format!("{} bytes of each point beyond its format", cloud.extra_bytes);
+        warnings.push(ReconstructionWarning { kind: WarningKind::FieldsDropped, count: 1, example });
+    }
+    if cloud.times_left_out {
+        let example = "gps_time, which is not unpacked from layered LAZ (point formats 6 to 10)".into();
         warnings.push(ReconstructionWarning { kind: WarningKind::FieldsDropped, count: 1, example });
     }
     if let Some(crs) = &cloud.crs {
@@ -56,6 +74,10 @@ pub(super) fn of_e57(path: &Path, cloud: E57Cloud) -> Result<Reconstruction, Rec
     let crs = crs.as_deref().map(Crs::understood);
     let format = SfmFormat::E57;
     with_points(path, positions, Reconstruction { format, crs, colors, fields, warnings, ..Reconstruction::default() })
+}
+
+fn listed<'a>(classes: impl IntoIterator<Item = &'a u8>) -> String {
+    classes.into_iter().map(u8::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn file_name(path: &Path) -> String {

@@ -32,6 +32,6 @@ pub use model::{
     SfmFormat, Sight,
 };
 pub use names::{AmbiguousName, NameIndex, NameMatch, match_names};
-pub use read::{ReconstructionError, read_reconstruction};
+pub use read::{ReconstructionError, SfmOptions, read_reconstruction, read_reconstruction_with};
 pub use recognise::{SfmSource, recognise};
 pub use warning::{ReconstructionWarning, WarningKind};

@@ -40,6 +40,12 @@ pub enum ReconstructionError {
     Inconsistent { path: PathBuf, object: String, expected: String, got: String },
     #[error("{path}: the reconstruction has no points; give one that has")]
     NoPoints { path: PathBuf },
+    #[error("{path}: the cloud has no points of the classes {wanted}; it has the classes {found}")]
+    NoPointsOfClasses { path: PathBuf, wanted: String, found: String },
+    #[error(
+        "{path}: classes were asked for, which points of LAS, LAZ and COPC have; these have none, leave --classes out"
+    )]
+    NoClasses { path: PathBuf },
     #[error(
         "{path}: the coordinates are latitude and longitude in degrees, which make no shape; project them first \
          (pdal translate IN OUT reprojection --filters.reprojection.out_srs=EPSG:...)"
@@ -56,11 +62,34 @@ pub enum ReconstructionError {
 /// what OpenSfM, ODM, nerfstudio, OpenMVG, Bundler or VisualSFM wrote. By content, not only by name. One file of a COLMAP model
 /// stands for its folder.
 pub fn read_reconstruction(path: &Path) -> Result<Reconstruction, ReconstructionError> {
+    read_reconstruction_with(path, &SfmOptions::default())
+}
+
+/// How a reconstruction is to be taken.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SfmOptions {
+    /// The classes of LAS, LAZ and COPC whose points take part; where `None`, all but noise (7, 18).
+    pub classes: Option<Vec<u8>>,
+}
+
+impl SfmOptions {
+    pub fn with_classes(self, classes: impl Into<Vec<u8>>) -> SfmOptions {
+        SfmOptions { classes: Some(classes.into()) }
+    }
+}
+
+/// As [`read_reconstruction`], taken as the options say.
+pub fn read_reconstruction_with(path: &Path, options: &SfmOptions) -> Result<Reconstruction, ReconstructionError> {
     let source = recognise(path)?;
+    let classes = options.classes.as_deref();
+    if classes.is_some() && !matches!(source, SfmSource::Las(_)) {
+        return Err(ReconstructionError::NoClasses { path: path.into() });
+    }
     let mut reconstruction = match &source {
         SfmSource::Colmap(folder) => read_colmap(folder)?,
         SfmSource::Ply(path) => ply::reconstruction(path, read_ply(path)?)?,
-        SfmSource::Las(path) => cloud::of_las(path, read_las(path)?)?,
+        SfmSource::Las(path) => cloud::of_las(path, read_las(path, classes)?, classes)?,
         SfmSource::E57(path) => cloud::of_e57(path, read_e57(path)?)?,
         SfmSource::OpenSfm(path) => opensfm::read(path)?,
         SfmSource::Nerfstudio(path) => nerfstudio::reconstruction(path, &read_nerfstudio(path)?)?,

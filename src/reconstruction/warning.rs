@@ -64,6 +64,8 @@ pub enum WarningKind {
     OddRowsPassedOver,
     /// Points classified as noise (7, 18), or withheld, left out.
     NoiseLeftOut,
+    /// Points of other classes than were asked for, left out.
+    OtherClassesLeftOut,
     /// Coordinates in another unit than metres.
     UnitNotMetres,
     /// Heights in another unit than the plan.
@@ -116,6 +118,7 @@ impl WarningKind {
                 "rows of other elements than vertices that are not as the header says, passed over"
             }
             WarningKind::NoiseLeftOut => "points classified as noise (7, 18) or withheld, left out",
+            WarningKind::OtherClassesLeftOut => "points of other classes than were asked for, left out",
             WarningKind::UnitNotMetres => "unit other than metres",
             WarningKind::HeightsBrought => "unit of heights other than that of the plan",
             WarningKind::CamerasNotHeld => "photographs with a camera model that is not read, left out",

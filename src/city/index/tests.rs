@@ -114,10 +114,10 @@ fn near_a_place_only_the_blocks_it_touches_are_read_and_their_facets_are_those_o
 fn a_place_outside_the_city_gets_the_nearest_block() {
     let room = Room::new();
     let far = PlanBox { low: [1e6, 1e6], high: [1e6, 1e6] };
-    let found = read_city_within(&room.at(), &[], &CityOptions::default(), &far).unwrap();
+    let found = read_city_within(&[room.at()], &[], &CityOptions::default(), &far).unwrap();
     assert!(!found.facets.is_empty());
     // A text is read whole.
-    let all = read_city_within(&room.city(), &[], &CityOptions::default(), &far).unwrap();
+    let all = read_city_within(&[room.city()], &[], &CityOptions::default(), &far).unwrap();
     assert!(all.facets.len() > found.facets.len());
 }
 

@@ -36,14 +36,14 @@ fn what_is_no_city_and_no_reconstruction_is_named_with_its_place() {
     let at = |name: &str| room.path().join(name);
     let city = |name: &str, terrain: &[PathBuf]| {
         let args = CityArgs { terrain: terrain.to_vec(), ..CityArgs::default() };
-        CityFiles::new(&at(name), &args).map(|files| files.names())
+        CityFiles::new(&[at(name)], &args).map(|files| files.names())
     };
     assert_eq!(city("city.obj", &[]).unwrap(), ["city.obj"]);
     assert!(city("absent.obj", &[]).unwrap_err().to_string().contains("cannot read the city"));
     assert!(city("city.obj", &[at("city.obj")]).unwrap_err().to_string().contains("given again as terrain"));
     assert_eq!(city("city.obj", &[at("cloud.ply")]).unwrap(), ["city.obj", "cloud.ply"]);
-    assert!(existing_sfm(&at("folder"), &at("city.obj")).is_ok());
-    let same = existing_sfm(&at("city.obj"), &at("folder/../city.obj")).unwrap_err().to_string();
+    assert!(existing_sfm(&at("folder"), &[at("city.obj")]).is_ok());
+    let same = existing_sfm(&at("city.obj"), &[at("folder/../city.obj")]).unwrap_err().to_string();
     assert!(same.contains("the same file"), "{same}");
     assert!(existing_reconstruction(&at("absent"), "part 2").unwrap_err().to_string().contains("cannot read part 2"));
 }

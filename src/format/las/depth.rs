@@ -4,10 +4,8 @@
 //! say so tens of thousands of times in a byte, and a stack that overflows ends the process. The essence is: whoever asks the source for a
 //! byte does so from the depth at which it is, so the source can see it and refuse.
 //!
-//! Layered chunks are read whole before they are unpacked, so that the source sees nothing of it: there the stack alone is the limit. Nothing
-//! that the file says bounds the depth: one point may change clocks any number of times, and 130 bytes of a layer of times suffice where all
-//! of them say so. To know it before means to unpack the layer of times, and that of the coordinates, which tells whose time changes: half of the work
-//! twice.
+//! Layered chunks are read whole before they are unpacked, so that the source would see nothing of it: their times are not unpacked at all
+//! (`pieces.rs`), and nothing else calls itself.
 
 use std::io::{BufRead, BufReader, Error, Read, Result, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};

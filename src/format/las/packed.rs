@@ -34,7 +34,7 @@ pub(super) fn check_packed(file: &mut (impl Read + Seek), header: &las::Header, 
         check_table(file, &packing, points_at, length)?;
     }
     // The crate goes by the versions of the items, whatever the record says.
-    match (*way, packing.items().iter().any(|item| item.version() >= FIRST_LAYERED)) {
+    match (*way, is_layered(&packing)) {
         (IN_LAYERS, _) => {}
         (_, true) => return Err("points are packed in layers, and said not to be".into()),
         (_, false) => return Ok(()),
@@ -44,7 +44,11 @@ pub(super) fn check_packed(file: &mut (impl Read + Seek), header: &las::Header, 
     check_layers(file, &packing, points_at + OFFSET_BYTES, chunks, length)
 }
 
-fn points_at(file: &mut (impl Read + Seek)) -> IoResult<u64> {
+pub(super) fn is_layered(packing: &LazVlr) -> bool {
+    packing.items().iter().any(|item| item.version() >= FIRST_LAYERED)
+}
+
+pub(super) fn points_at(file: &mut (impl Read + Seek)) -> IoResult<u64> {
     file.seek(SeekFrom::Start(96))?;
     u32_of(file).map(u64::from)
 }

@@ -12,7 +12,7 @@ fn las(units: [Option<(&str, f64)>; 2], is_geographic: bool) -> LasCloud {
 }
 
 fn read(cloud: LasCloud) -> Result<Reconstruction, ReconstructionError> {
-    of_las(Path::new("a/cloud.las"), cloud)
+    of_las(Path::new("a/cloud.las"), cloud, None)
 }
 
 #[test]
@@ -46,10 +46,12 @@ fn degrees_are_refused_with_the_way_out_unless_the_numbers_are_none() {
 }
 
 #[test]
-fn noise_and_bytes_without_a_name_are_counted() {
-    let cloud = LasCloud { noise: 3, extra_bytes: 4, positions: vec![[1.0; 3]], ..LasCloud::default() };
+fn noise_bytes_without_a_name_and_times_that_stay_packed_are_told() {
+    let positions = vec![[1.0; 3]];
+    let cloud = LasCloud { noise: 3, extra_bytes: 4, times_left_out: true, positions, ..LasCloud::default() };
     let told: Vec<String> = read(cloud).unwrap().warnings.iter().map(ToString::to_string).collect();
     assert!(told[0].starts_with("3 points classified as noise") && told[1].contains("4 bytes"), "{told:?}");
+    assert!(told[2].contains("gps_time"), "{told:?}");
 }
 
 #[test]

@@ -40,6 +40,8 @@ fn unpack(output: &Path) -> Result<()> {
 fn align_args(sample: &Path) -> AlignArgs {
     AlignArgs {
         near: None,
+        scale_range: None,
+        budget: None,
         city: sample.join("city.obj"),
         sfm: sample.join("sfm"),
         // Within the sample, so that it never is a place that exists: the true one is set aside already.

@@ -1,6 +1,7 @@
 //! What is meant: paths that exist, options that go together. Traps are found here, before any long work.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use crate::city::{CityIndex, CityModel, CityOptions, PlanBox, is_index_at, read_city, read_city_within};
 use crate::geometry::Vector3;
@@ -31,6 +32,7 @@ pub struct Settings {
     accuracy_m: Option<f64>,
     seed: u64,
     false_alarm: f64,
+    budget: Option<Duration>,
 }
 
 /// The files of a city model.
@@ -76,11 +78,15 @@ impl AlignPlan {
         self.settings.fixed_scale
     }
 
+    pub fn has_budget(&self) -> bool {
+        self.settings.budget.is_some()
+    }
+
     /// Everything that `align` takes, from that place on.
     pub fn options(&self, place: Place) -> AlignOptions {
-        let Settings { fixed_scale, up, accuracy_m, seed, false_alarm } = self.settings;
+        let Settings { fixed_scale, up, accuracy_m, seed, false_alarm, budget } = self.settings;
         let options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::at(place) };
-        options.with_false_alarm(false_alarm)
+        options.with_false_alarm(false_alarm).with_budget(budget)
     }
 }
 
@@ -93,7 +99,8 @@ impl Settings {
         };
         let fixed_scale = args.scale.map(|scale| scale.0);
         let accuracy_m = args.accuracy.map(|accuracy| accuracy.0);
-        Settings { fixed_scale, up, accuracy_m, seed, false_alarm: args.false_alarm.0 }
+        let budget = args.budget.map(|budget| budget.0);
+        Settings { fixed_scale, up, accuracy_m, seed, false_alarm: args.false_alarm.0, budget }
     }
 }
 
@@ -107,9 +114,9 @@ impl CityFiles {
         Ok(CityFiles { city: city.into(), terrain: args.terrain.clone(), options: args.options() })
     }
 
-    /// The frame of a city that is an index, without anything in it.
-    pub fn frame_of_index(&self) -> Result<Option<CityModel>> {
-        is_index_at(&self.city).then(|| Ok(CityIndex::open(&self.city)?.read_frame()?)).transpose()
+    /// The index that the city is, where it is one.
+    pub fn index(&self) -> Result<Option<CityIndex>> {
+        is_index_at(&self.city).then(|| Ok(CityIndex::open(&self.city)?)).transpose()
     }
 
     /// Reads the city; where it is an index, only what matters of it.

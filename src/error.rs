@@ -1,5 +1,6 @@
 //! All errors of the library as one.
 
+use crate::align::AlignIndexError;
 use crate::city::CityError;
 use crate::city_index::CityIndexError;
 use crate::export::{ExportError, OutputError, ReportError};
@@ -21,6 +22,8 @@ pub enum Error {
     City(#[from] CityError),
     #[error(transparent)]
     CityIndex(#[from] CityIndexError),
+    #[error(transparent)]
+    AlignIndex(#[from] AlignIndexError),
     #[error(transparent)]
     Reconstruction(#[from] ReconstructionError),
     #[error(transparent)]

@@ -64,7 +64,7 @@ mod inspect;
 pub mod cli;
 
 // Alignment.
-pub use align::{AlignOptions, Place, Up, align};
+pub use align::{AlignOptions, IndexedAlignment, Place, Up, align, align_in_index};
 pub use error::Error;
 pub use inspect::{InputKind, Inspection, inspect};
 pub use observer::{Cancelled, Observer, Stage};
@@ -104,6 +104,7 @@ pub use geometry::{Matrix3, Point3, Rotation3, Similarity, Vector3};
 
 /// What the models and results are made of, and the errors of single functions.
 pub mod types {
+    pub use crate::align::AlignIndexError;
     pub use crate::city::{
         CityChange, CityContents, CityDefect, CityError, CityPlace, CityRole, CitySize, CitySource, CityWarning, Crs,
         FacetId, IndexOverview, KindCounts, Lod, ObjectId, SurfaceKind, WholeCity,

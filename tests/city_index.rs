@@ -77,3 +77,49 @@ fn an_index_of_a_city_that_has_changed_is_refused_in_one_line() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(message.lines().count() == 1 && message.contains("has changed since"), "{message}");
 }
+
+#[test]
+fn a_reconstruction_of_which_nothing_is_known_is_found_by_the_walls_in_the_index_where_the_text_finds_it() {
+    let room = room();
+    let sfm = format!("{SAMPLE}/sfm");
+    let told = |city: &str, out: &str| -> serde_json::Value {
+        let done = cityweld(room.path(), &["align", city, &sfm, "-o", out]);
+        assert!(done.status.code().is_some_and(|code| code < 2), "{}", String::from_utf8_lossy(&done.stderr));
+        serde_json::from_slice(&fs::read(room.path().join(out).join("alignment.json")).unwrap()).unwrap()
+    };
+    let (text, index) = (told("city.obj", "text"), told("city.cwi", "index"));
+    for key in ["verdict", "best_candidate", "covariance"] {
+        assert_eq!(text[key], index[key], "{key}");
+    }
+    assert_eq!(text["certainty"]["search_bits"], index["certainty"]["search_bits"]);
+}
+
+#[test]
+fn a_search_without_time_ends_in_a_failure_that_says_what_share_was_searched() {
+    let room = room();
+    let sfm = format!("{SAMPLE}/sfm");
+    for city in ["city.obj", "city.cwi"] {
+        let done = cityweld(room.path(), &["align", city, &sfm, "-o", "out", "--budget", "1e-9", "--json", "--force"]);
+        let told = String::from_utf8_lossy(&done.stdout).into_owned();
+        assert_eq!(done.status.code(), Some(1), "{told}");
+        assert!(told.contains("\"failed\"") && told.contains("0.0 % of the city"), "{told}");
+    }
+    let start = format!("{SAMPLE}/start.json");
+    for arguments in [&["--budget", "0"][..], &["--budget", "5", "--start", &start], &["--scale-range", "3,2"]] {
+        let given = [&["align", "city.obj", &sfm, "-o", "no"][..], arguments].concat();
+        assert_eq!(cityweld(room.path(), &given).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_search_with_time_enough_answers_as_without_a_budget() {
+    let room = room();
+    let sfm = format!("{SAMPLE}/sfm");
+    for (out, more) in [("without", &[][..]), ("with", &["--budget", "100000"])] {
+        let done = cityweld(room.path(), &[&["align", "city.obj", &sfm, "-o", out][..], more].concat());
+        assert!(done.status.code().is_some_and(|code| code < 2), "{}", String::from_utf8_lossy(&done.stderr));
+    }
+    let [without, with] =
+        ["without", "with"].map(|out| fs::read(room.path().join(out).join("alignment.json")).unwrap());
+    assert!(without == with);
+}

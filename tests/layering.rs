@@ -47,6 +47,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "limits",
             "observer",
             "geometry",
+            "format",
             "city",
             "reconstruction",
             "imagery",

@@ -1,7 +1,8 @@
 //! Aligns one reconstruction to a city: `task` is the whole job, `whereabouts` where it is sought, `obstacle` why none is possible, `evidence` what the verdict reads, `report` the
-//! result.
+//! result; `indexed` the same job where the city is an index.
 
 mod evidence;
+mod indexed;
 mod obstacle;
 mod options;
 mod outcome;
@@ -9,5 +10,6 @@ mod report;
 mod task;
 mod whereabouts;
 
+pub use indexed::{AlignIndexError, IndexedAlignment, align_in_index};
 pub use options::{AlignOptions, Place, Up};
 pub use task::align;

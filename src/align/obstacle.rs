@@ -7,7 +7,7 @@ use crate::correspondence::{LevelCloud, Prior, Vertical};
 use crate::geometry::{Point3, Start, Vector3};
 use crate::limits::Limits;
 use crate::place_search::PlaceObstacle;
-use crate::planes::{Patches, PreparedCity, Upright};
+use crate::planes::{Patches, Upright};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Motion;
 
@@ -38,14 +38,18 @@ pub(super) enum Obstacle {
     NoPlace(PlaceObstacle),
     /// Without a start: no place in the city lets the walls lie on its own better than chance.
     NothingFits,
+    /// ... nor in the share of the city that was searched before the time was over.
+    NothingFitsInPart {
+        share: f64,
+    },
 }
 
 /// No cloud of a city is larger, metres: the Earth's radius.
 const LARGEST_RADIUS_M: f64 = 6.4e6;
 
 /// What stands in the way wherever the reconstruction is sought.
-pub(super) fn of_inputs(city: &PreparedCity, reconstruction: &Reconstruction, patches: &Patches) -> Option<Obstacle> {
-    if city.model.triangles.is_empty() || city.model.bounds().is_none() {
+pub(super) fn of_inputs(city: &CityModel, reconstruction: &Reconstruction, patches: &Patches) -> Option<Obstacle> {
+    if city.whole_size().triangles == 0 || city.bounds().is_none() {
         return Some(Obstacle::EmptyCity);
     }
     if reconstruction.points.is_empty() {
@@ -106,6 +110,12 @@ impl fmt::Display for Obstacle {
                 f,
                 "at no place do the walls of the reconstruction lie on the city's better than chance lets them; check that the city covers this \
                  place, or give a start"
+            ),
+            Obstacle::NothingFitsInPart { share } => write!(
+                f,
+                "in the {:.1} % of the city that were searched in the time given no place lets the walls of the reconstruction lie on its own \
+                 better than chance; give it more time (--budget), a start, or --near",
+                100.0 * share
             ),
             Obstacle::OddSize { radius_m, scale } => write!(
                 f,

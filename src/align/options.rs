@@ -1,5 +1,7 @@
 //! What the user may set.
 
+use std::time::Duration;
+
 use crate::geometry::{Start, Vector3};
 use crate::limits::Limits;
 use crate::place_search::PlacePrior;
@@ -44,6 +46,8 @@ pub struct AlignOptions {
     pub accuracy_m: Option<f64>,
     /// Same seed, same answer, whatever the number of threads.
     pub seed: u64,
+    /// Without a start: time after which no more of the city is searched. What was left out is told, and then nothing is `aligned`.
+    pub budget: Option<Duration>,
     pub(crate) limits: Limits,
 }
 
@@ -59,7 +63,15 @@ impl AlignOptions {
     }
 
     pub(crate) fn at(place: Place) -> AlignOptions {
-        AlignOptions { place, fixed_scale: None, up: Up::Auto, accuracy_m: None, seed: 0, limits: Limits::default() }
+        AlignOptions {
+            place,
+            fixed_scale: None,
+            up: Up::Auto,
+            accuracy_m: None,
+            seed: 0,
+            budget: None,
+            limits: Limits::default(),
+        }
     }
 
     /// Holds the scale, metres per sfm unit; `None` leaves it free.
@@ -80,6 +92,11 @@ impl AlignOptions {
     pub fn with_false_alarm(mut self, chance: f64) -> AlignOptions {
         self.limits.verdict.false_alarm = chance;
         self
+    }
+
+    /// Without a start: ends the search of the city after this time. A search that is done before then has the same answer as without.
+    pub fn with_budget(self, budget: impl Into<Option<Duration>>) -> AlignOptions {
+        AlignOptions { budget: budget.into(), ..self }
     }
 
     #[doc(hidden)]

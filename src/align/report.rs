@@ -4,6 +4,7 @@ use super::evidence::VerdictInput;
 use super::obstacle::Obstacle;
 use super::options::AlignOptions;
 use super::outcome::Outcome;
+use crate::city::CityModel;
 use crate::correspondence::{NO_SOLVER, PointPlaneMatch};
 use crate::geometry::Point3;
 use crate::planes::{Patches, PreparedCity, UpCandidate};
@@ -52,20 +53,15 @@ fn model_errors(findings: &SystematicErrors) -> ModelErrors {
 }
 
 /// The alignment where there was nothing to search.
-pub(super) fn refused(
-    obstacle: &Obstacle,
-    city: &PreparedCity,
-    patches: &Patches,
-    options: &AlignOptions,
-) -> Alignment {
+pub(super) fn refused(obstacle: &Obstacle, city: &CityModel, patches: &Patches, options: &AlignOptions) -> Alignment {
     Alignment {
         verdict: Verdict::Failed,
         reason: obstacle.to_string(),
         best_candidate: None,
         alternatives: Vec::new(),
         certainty: Certainty { false_alarm: options.limits.verdict.false_alarm, ..Certainty::default() },
-        origin: city.model.origin,
-        center: Point3::from(city.model.origin),
+        origin: city.origin,
+        center: Point3::from(city.origin),
         radius: 0.0,
         accuracy_m: options.accuracy_m.unwrap_or(options.limits.verdict.default_accuracy_m),
         model_errors: ModelErrors::default(),

@@ -27,7 +27,7 @@ pub fn align(
 ) -> Result<Alignment, Cancelled> {
     observer.progress(Stage::Patches, 0, 0);
     let patches = patches(reconstruction, superpixels, &options.limits.patches);
-    let Some(start) = whereabouts::in_place(city, reconstruction, &patches, options) else {
+    let Some(start) = whereabouts::in_place(&city.model, reconstruction, &patches, options) else {
         return align_patches(city, reconstruction, &patches, options, observer);
     };
     // The false alarms that are allowed are shared between the two searches.
@@ -40,17 +40,27 @@ pub fn align(
     }
 }
 
-fn align_patches(
+pub(super) fn align_patches(
     city: &PreparedCity,
     reconstruction: &Reconstruction,
     patches: &Patches,
     options: &AlignOptions,
     observer: &dyn Observer,
 ) -> Result<Alignment, Cancelled> {
-    let mut whereabouts = match Whereabouts::find(city, reconstruction, patches, options, observer)? {
-        Ok(whereabouts) => whereabouts,
-        Err(obstacle) => return Ok(report::refused(&obstacle, city, patches, options)),
-    };
+    match Whereabouts::find(city, reconstruction, patches, options, observer)? {
+        Ok(whereabouts) => align_about(city, patches, whereabouts, options, observer),
+        Err(obstacle) => Ok(report::refused(&obstacle, &city.model, patches, options)),
+    }
+}
+
+/// Aligns from there on.
+pub(super) fn align_about(
+    city: &PreparedCity,
+    patches: &Patches,
+    mut whereabouts: Whereabouts,
+    options: &AlignOptions,
+    observer: &dyn Observer,
+) -> Result<Alignment, Cancelled> {
     check_cancelled(observer)?;
     observer.progress(Stage::City, 0, 0);
     let answer_about = |whereabouts: &Whereabouts| Task { city, patches, whereabouts, options, observer }.answer();
@@ -63,6 +73,7 @@ fn align_patches(
     if moved_to_answer(&whereabouts, &answer, city, patches, options).is_some() {
         answer.decision = answer.decision.between_places();
     }
+    answer.decision = answer.decision.with_left_out(&whereabouts.left_out());
     let up_elsewhere = up_elsewhere(&answer.decision, patches, &whereabouts, options);
     Ok(report::tell(answer, patches, up_elsewhere, city, options))
 }

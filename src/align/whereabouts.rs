@@ -1,18 +1,20 @@
 //! Where the search begins: at a start, or at the places that the walls of the reconstruction find in the city.
 
 use std::f64::consts::PI;
+use std::time::Instant;
 
 use super::obstacle::{self, Obstacle};
 use super::options::{AlignOptions, Place, Up};
+use crate::city::CityModel;
 use crate::correspondence::{Hypotheses, Scene};
 use crate::geometry::{Similarity, Start, StartSigmas, Vector3};
 use crate::limits::Limits;
 use crate::observer::{Cancelled, Observer};
-use crate::place_search::{PlaceCandidate, PlacePrior, PlaceSearch, search_places};
+use crate::place_search::{PlaceCandidate, PlacePrior, PlaceSearch, PlaceTask, search_places};
 use crate::planes::{Patches, PreparedCity, UpChoice, Upright, choose_up, up_without_start};
 use crate::reconstruction::Reconstruction;
 use crate::robust::Ranked;
-use crate::verdict::SearchSpace;
+use crate::verdict::{LeftOut, SearchSpace};
 
 /// What is known of the place before poses are compared.
 pub(super) struct Whereabouts {
@@ -35,7 +37,7 @@ impl Whereabouts {
         options: &AlignOptions,
         observer: &dyn Observer,
     ) -> Result<Result<Whereabouts, Obstacle>, Cancelled> {
-        if let Some(obstacle) = obstacle::of_inputs(city, reconstruction, patches) {
+        if let Some(obstacle) = obstacle::of_inputs(&city.model, reconstruction, patches) {
             return Ok(Err(obstacle));
         }
         match &options.place {
@@ -68,21 +70,32 @@ impl Whereabouts {
         options: &AlignOptions,
         observer: &dyn Observer,
     ) -> Result<Result<Whereabouts, Obstacle>, Cancelled> {
-        let limits = &options.limits;
-        let uprights = match options.up {
-            Up::Given(up) => {
-                up.try_normalize(0.0).map(|up| Upright { up, sigma_rad: 0.0, known: true }).into_iter().collect()
-            }
-            Up::Auto | Up::None => up_without_start(patches, limits),
-        };
-        let mut prior = prior.relative_to(&city.model.origin);
-        prior.scale = options.fixed_scale.map(|scale| [scale, scale]).or(prior.scale);
-        let mut places = search_places(city, patches, &uprights, &prior, limits, observer)?;
+        let origin = &city.model.origin;
+        let places = sought(prior, origin, patches, options, observer, |task| search_places(city, task))?;
+        Ok(Whereabouts::of_places(places, patches, options))
+    }
+
+    /// At places that a search of the city found.
+    pub fn of_places(
+        mut places: PlaceSearch,
+        patches: &Patches,
+        options: &AlignOptions,
+    ) -> Result<Whereabouts, Obstacle> {
         if let Some(obstacle) = places.obstacle {
-            return Ok(Err(Obstacle::NoPlace(obstacle)));
+            return Err(Obstacle::NoPlace(obstacle));
         }
+        let share = places.share_searched;
         places.candidates.iter_mut().for_each(|c| c.start = of_given_scale(&c.start, options.fixed_scale, patches));
-        Ok(Whereabouts::about_first(places, patches, limits).ok_or(Obstacle::NothingFits))
+        let nothing = if share < 1.0 { Obstacle::NothingFitsInPart { share } } else { Obstacle::NothingFits };
+        Whereabouts::about_first(places, patches, &options.limits).ok_or(nothing)
+    }
+
+    /// What the search has left out.
+    pub fn left_out(&self) -> LeftOut {
+        let all = LeftOut { share_searched: 1.0, unexamined: 0 };
+        self.places
+            .as_ref()
+            .map_or(all, |places| LeftOut { share_searched: places.share_searched, unexamined: places.unexamined })
     }
 
     /// Places found, about the first of them: `None` where there is none.
@@ -146,18 +159,41 @@ impl Whereabouts {
     }
 }
 
+/// Has a search made for what a prior, to a city about an origin, allows; the time that it may take begins here.
+pub(super) fn sought<T>(
+    prior: &PlacePrior,
+    origin: &Vector3<f64>,
+    patches: &Patches,
+    options: &AlignOptions,
+    observer: &dyn Observer,
+    search: impl FnOnce(&PlaceTask) -> T,
+) -> T {
+    let begun = Instant::now();
+    let limits = &options.limits;
+    let uprights = match options.up {
+        Up::Given(up) => {
+            up.try_normalize(0.0).map(|up| Upright { up, sigma_rad: 0.0, known: true }).into_iter().collect()
+        }
+        Up::Auto | Up::None => up_without_start(patches, limits),
+    };
+    let mut prior = prior.relative_to(origin);
+    prior.scale = options.fixed_scale.map(|scale| [scale, scale]).or(prior.scale);
+    let is_over = || options.budget.is_some_and(|budget| begun.elapsed() >= budget);
+    search(&PlaceTask { patches, uprights: &uprights, prior: &prior, limits, is_over: &is_over, observer })
+}
+
 /// A start at the coordinates that a reconstruction has, where it seems to stand in the city's own system already: its file names a system, or its
 /// coordinates are far from zero, and they lie in the city.
 pub(super) fn in_place(
-    city: &PreparedCity,
+    city: &CityModel,
     reconstruction: &Reconstruction,
     patches: &Patches,
     options: &AlignOptions,
 ) -> Option<Start> {
     let Place::Anywhere(prior) = &options.place else { return None };
-    let (low, high) = city.model.bounds()?;
+    let (low, high) = city.bounds()?;
     let middle = patches.middle();
-    let local = middle - city.model.origin;
+    let local = middle - city.origin;
     let is_in_city = (0..2).all(|k| (low[k]..=high[k]).contains(&local[k]));
     let is_allowed = prior.near.is_none_or(|near| near.holds([middle.x, middle.y]));
     let is_georeferenced = reconstruction.crs.is_some() || middle.coords.xy().norm() > FAR_FROM_ZERO;

@@ -1,6 +1,7 @@
 //! `cityweld align`
 
 use crate::Place;
+use crate::city::CityIndex;
 use crate::export::{
     CityCounts, InputSummary, Output, OutputKind, SfmCounts, alignment_report, start_report, write_alignment,
 };
@@ -25,13 +26,20 @@ pub fn run(args: &AlignArgs, session: &Session) -> Result<Outcome> {
 /// Aligns, writes into `output`, puts it in its place and tells; without an output the start alone is told.
 pub fn carry_out(plan: &AlignPlan, output: Option<Output>, session: &Session) -> Result<Outcome> {
     let voice = &session.voice;
-    let inputs = Inputs::read(plan, session)?;
-    let superpixels = inputs.superpixels.as_ref();
+    let mut inputs = Inputs::read(plan, session)?;
     let Some((output, place)) = output.zip(plan.output.as_ref()) else {
         return tell_start(&inputs, plan, session);
     };
     let options = plan.options(inputs.place());
-    let mut alignment = crate::align(&inputs.city, &inputs.sfm, superpixels, &options, &voice.bar)?;
+    let superpixels = inputs.superpixels.as_ref();
+    let mut alignment = match &inputs.index {
+        None => crate::align(&inputs.city, &inputs.sfm, superpixels, &options, &voice.bar)?,
+        Some(index) => {
+            let found = crate::align_in_index(index, &inputs.sfm, superpixels, &options, &voice.bar)?;
+            inputs.city = found.city;
+            found.alignment
+        }
+    };
     voice.detail(&format!("{}: {}", alignment.verdict.word(), alignment.reason));
     alignment.warnings.splice(0..0, inputs.warnings(plan));
 
@@ -52,7 +60,10 @@ pub fn carry_out(plan: &AlignPlan, output: Option<Output>, session: &Session) ->
 }
 
 struct Inputs {
+    /// Without anything in it where an index is to be searched.
     city: PreparedCity,
+    /// Searched by its walls, so that not all of it need be read.
+    index: Option<CityIndex>,
     sfm: Reconstruction,
     superpixels: Option<LiftedSuperpixels>,
     /// Without one the city is searched.
@@ -91,15 +102,20 @@ impl Inputs {
     fn read(plan: &AlignPlan, session: &Session) -> Result<Inputs> {
         let voice = &session.voice;
         // Of an index only what the start can reach is read, so the start comes first.
-        let frame = plan.city.frame_of_index()?;
+        let index = plan.city.index()?;
+        let frame = index.as_ref().map(CityIndex::read_frame).transpose()?;
         let early = frame.as_ref().map(|_| read_sfm(plan, session)).transpose()?;
         let within = match frame.as_ref().zip(early.as_ref()) {
             Some((frame, sfm)) => plan.place.surroundings(sfm, frame, plan.fixed_scale())?,
             None => None,
         };
         voice.bar.show("reading the city", 0, 0);
-        let city = plan.city.read(within.as_ref())?;
-        voice.detail(&format!("city: {} facets of {} objects", city.facets.len(), city.objects.len()));
+        let index = index.filter(|_| plan.place.is_anywhere());
+        let city = match frame.filter(|_| index.is_some()) {
+            Some(frame) => frame,
+            None => plan.city.read(within.as_ref())?,
+        };
+        voice.detail(&format!("city: {} facets of {} objects are read", city.facets.len(), city.objects.len()));
         let prior = plan.place.prior(&city)?;
         let sfm = early.map_or_else(|| read_sfm(plan, session), Ok)?;
         let start = match plan.place.estimate(&sfm, &city)? {
@@ -125,7 +141,7 @@ impl Inputs {
                 Some(lifted)
             }
         };
-        Ok(Inputs { city: PreparedCity::new(city), sfm, superpixels, start, prior })
+        Ok(Inputs { city: PreparedCity::new(city), index, sfm, superpixels, start, prior })
     }
 
     fn place(&self) -> Place {
@@ -137,6 +153,12 @@ impl Inputs {
         let mut warnings = plan.warnings.clone();
         warnings.extend(self.city.model.warnings.iter().map(ToString::to_string));
         warnings.extend(self.sfm.warnings.iter().map(ToString::to_string));
+        if let Some(known) = self.start.as_ref().filter(|_| plan.has_budget()) {
+            warnings.push(format!(
+                "--budget is of no use: the city is not searched, the start is known ({})",
+                known.estimate.source
+            ));
+        }
         warnings.extend(self.start.iter().flat_map(|known| &known.estimate.warnings).cloned());
         warnings.extend(self.superpixels.iter().flat_map(|lifted| &lifted.warnings).map(ToString::to_string));
         warnings

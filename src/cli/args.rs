@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use clap::{Parser, Subcommand, ValueEnum};
 
 pub use city::CityArgs;
-pub use values::{Accuracy, Near, Probability, Scale, UpArg};
+pub use values::{Accuracy, Budget, Near, Probability, Scale, ScaleRange, UpArg};
 
 /// The version, the commit where whoever built it named one in CITYWELD_COMMIT (a package has no repository to ask), and the features.
 static VERSION: LazyLock<String> = LazyLock::new(|| {
@@ -158,6 +158,13 @@ pub struct AlignArgs {
     /// Scale that is known, metres per reconstruction unit: held exactly, in place of the start's [default: free]
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub scale: Option<Scale>,
+    /// Scale that is known in part, metres per reconstruction unit: without a start the city is searched at no other
+    #[arg(long, value_name = "LEAST,MOST", conflicts_with_all = ["scale", "start", "positions", "points"])]
+    pub scale_range: Option<ScaleRange>,
+    /// Seconds after which no more of the city is searched where there is no start: what was left out is told, and then the verdict is
+    /// ambiguous or failed; a search that is done before then answers as without [default: all of it is searched]
+    #[arg(long, value_name = "SECONDS", conflicts_with_all = ["start", "positions", "points"])]
+    pub budget: Option<Budget>,
     /// What every freedom must be held to, one sigma in metres at the scene's radius, for the verdict to be aligned [default: 0.35 or 1 % of
     /// the radius, whichever is more]
     #[arg(long, value_name = "METRES")]

@@ -41,6 +41,8 @@ fn align_args(sample: &Path) -> AlignArgs {
     AlignArgs {
         near: None,
         city: vec![sample.join("city.obj")],
+        scale_range: None,
+        budget: None,
         sfm: sample.join("sfm"),
         // Within the sample, so that it never is a place that exists: the true one is set aside already.
         output: Some(sample.join("out")),

@@ -23,6 +23,7 @@ pub struct PlaceSources {
     positions: Option<Named<PositionsFile>>,
     points: Option<Named<ControlFile>>,
     near: Option<Near>,
+    scale: Option<[f64; 2]>,
 }
 
 /// Something read, and the name of its file.
@@ -44,11 +45,16 @@ impl PlaceSources {
         let mut positions = args.positions.as_ref().map(named_positions).transpose()?;
         let points =
             args.points.as_ref().map(|path| anyhow::Ok(Named::new(path, read_control_points(path)?))).transpose()?;
-        let near = args.near;
+        let (near, scale) = (args.near, args.scale_range.map(|range| range.0));
         if start.is_none() && positions.is_none() && points.is_none() && near.is_none() {
             positions = of_photographs(args.photos.as_deref())?;
         }
-        Ok(PlaceSources { start, positions, points, near })
+        Ok(PlaceSources { start, positions, points, near, scale })
+    }
+
+    /// Whether nothing was given that says where in the city it is.
+    pub fn is_anywhere(&self) -> bool {
+        self.start.is_none() && self.positions.is_none() && self.points.is_none() && self.near.is_none()
     }
 
     /// What is known of the place where there is no start: the middle lies there, or anywhere in the city.
@@ -61,7 +67,7 @@ impl PlaceSources {
                 Some(Disc { center, radius_m })
             }
         };
-        Ok(PlacePrior { near, ..PlacePrior::default() })
+        Ok(PlacePrior { near, scale: self.scale, ..PlacePrior::default() })
     }
 
     /// What of the city matters, where that is known before it is read; all of it where positions or control points must be set into it first.
@@ -161,7 +167,8 @@ mod tests {
     use crate::format::crs::Crs;
 
     fn near(text: &str, city_epsg: Option<u32>) -> Result<Option<Disc>> {
-        let sources = PlaceSources { start: None, positions: None, points: None, near: Some(text.parse().unwrap()) };
+        let sources =
+            PlaceSources { start: None, positions: None, points: None, near: Some(text.parse().unwrap()), scale: None };
         let crs = city_epsg.map(|epsg| Crs { epsg: Some(epsg), ..Crs::default() });
         Ok(sources.prior(&CityModel { crs, ..CityModel::default() })?.near)
     }

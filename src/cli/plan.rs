@@ -1,6 +1,7 @@
 //! What is meant: paths that exist, options that go together. Traps are found here, before any long work.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use crate::city::{CityIndex, CityModel, CityOptions, PlanBox, is_index_at, read_city_files, read_city_within};
 use crate::geometry::Vector3;
@@ -33,6 +34,7 @@ pub struct Settings {
     accuracy_m: Option<f64>,
     seed: u64,
     false_alarm: f64,
+    budget: Option<Duration>,
 }
 
 /// The files of a city model.
@@ -81,11 +83,15 @@ impl AlignPlan {
         self.settings.fixed_scale
     }
 
+    pub fn has_budget(&self) -> bool {
+        self.settings.budget.is_some()
+    }
+
     /// Everything that `align` takes, from that place on.
     pub fn options(&self, place: Place) -> AlignOptions {
-        let Settings { fixed_scale, up, accuracy_m, seed, false_alarm } = self.settings;
+        let Settings { fixed_scale, up, accuracy_m, seed, false_alarm, budget } = self.settings;
         let options = AlignOptions { fixed_scale, up, accuracy_m, seed, ..AlignOptions::at(place) };
-        options.with_false_alarm(false_alarm)
+        options.with_false_alarm(false_alarm).with_budget(budget)
     }
 }
 
@@ -98,7 +104,8 @@ impl Settings {
         };
         let fixed_scale = args.scale.map(|scale| scale.0);
         let accuracy_m = args.accuracy.map(|accuracy| accuracy.0);
-        Settings { fixed_scale, up, accuracy_m, seed, false_alarm: args.false_alarm.0 }
+        let budget = args.budget.map(|budget| budget.0);
+        Settings { fixed_scale, up, accuracy_m, seed, false_alarm: args.false_alarm.0, budget }
     }
 }
 
@@ -118,11 +125,11 @@ impl CityFiles {
         Ok(CityFiles { city: city.into(), terrain: args.terrain.clone(), options: args.options() })
     }
 
-    /// The frame of a city that is an index, without anything in it.
-    pub fn frame_of_index(&self) -> Result<Option<CityModel>> {
+    /// The index that the city is, where it is one.
+    pub fn index(&self) -> Result<Option<CityIndex>> {
         // Beside other files an index is refused when the city is read.
         let [alone] = self.city.as_slice() else { return Ok(None) };
-        is_index_at(alone).then(|| Ok(CityIndex::open(alone)?.read_frame()?)).transpose()
+        is_index_at(alone).then(|| Ok(CityIndex::open(alone)?)).transpose()
     }
 
     /// Reads the city; where it is an index, only what matters of it.

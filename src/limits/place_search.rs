@@ -24,9 +24,18 @@ pub struct PlaceSearchLimits {
     /// Metres of a wall that count as one independent look, and how many looks one wall can be. Measured: so weighed, no search collapsed in scale.
     pub metres_of_look: f64,
     pub most_looks: f64,
-    /// Poses of the scan that are made sharp, distinct by this, metres over the cloud. Measured: the truth was the 27th at worst.
+    /// Poses of the scan that are made sharp, of each so many walls of the city, distinct by this, metres over the cloud. Measured: the truth was the
+    /// 27th of 14,900 walls at worst, and chance poses grow with the city.
     pub keep: usize,
+    pub walls_of_keep: usize,
     pub apart_m: f64,
+    /// Side of the squares that a city is scanned in, metres. Chosen: the raster of one takes 200 MB.
+    pub district_m: f64,
+    /// Sharp poses whose lines of sight are looked along and that are compared, the best of them. Chosen: among more than that none is beyond doubt.
+    pub most_places: usize,
+    pub most_sighted: usize,
+    /// Poses of at least this share of the scan's best score are made sharp. Chosen: below what makes poses comparable afterwards.
+    pub sharpened_share: f64,
     /// The tallest wall that was well seen is at least so tall, metres. Chosen: less is a fence.
     pub least_height_m: f64,
     /// Share of the city's walls that are no taller than the tallest that a scale may make of it. Chosen.
@@ -73,7 +82,12 @@ impl Default for PlaceSearchLimits {
             metres_of_look: 2.0,
             most_looks: 16.0,
             keep: 400,
+            walls_of_keep: 15_000,
             apart_m: 2.0,
+            district_m: 8000.0,
+            most_places: 100,
+            most_sighted: 2048,
+            sharpened_share: 0.5,
             least_height_m: 2.0,
             tallest_share: 0.99,
             most_radius_m: 500.0,

@@ -91,12 +91,23 @@ impl Blocks {
     /// The number of a block by its column and row.
     #[inline]
     pub fn number(&self, x: u32, y: u32) -> usize {
+        self.blocks[self.at(x, y)] as usize
+    }
+
+    /// Where the number of a block stands in [`Blocks::numbers`].
+    #[inline]
+    pub fn at(&self, x: u32, y: u32) -> usize {
         let (column, row) = (x >> TILE_BITS, y >> TILE_BITS);
         if column >= self.columns || row >= self.rows {
             return 0;
         }
         let tile = self.tiles[(row * self.columns + column) as usize] as usize;
-        self.blocks[tile * BLOCKS_OF_TILE + in_tile(x, y)] as usize
+        tile * BLOCKS_OF_TILE + in_tile(x, y)
+    }
+
+    /// Numbers of the blocks, tile by tile; those of the first tile, and of places that are far from walls, are 0.
+    pub fn numbers(&self) -> &[u32] {
+        &self.blocks
     }
 
     /// The block that a place lies in.

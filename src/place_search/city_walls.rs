@@ -78,10 +78,10 @@ pub fn walls_of_planes(
     (0..planes.len() as u32).into_par_iter().zip(planes).map(of_plane).collect()
 }
 
-/// The height that this share of the city's upright planes does not exceed, metres, seen or not.
-pub fn tallest_m(city: &PreparedCity, within: Option<&Disc>, share: f64, limits: &Limits) -> Option<f64> {
+/// The height that this share of the upright planes in a disc does not exceed, metres, seen or not.
+pub fn tallest_m(city: &PreparedCity, within: &Disc, share: f64, limits: &Limits) -> Option<f64> {
     let upright = |plane: &&CityPlane| plane.plane.normal.z.abs() < limits.upright_sin;
-    let inside = |plane: &&CityPlane| within.is_none_or(|disc| disc.meets_box(&plane.low, &plane.high));
+    let inside = |plane: &&CityPlane| within.meets_box(&plane.low, &plane.high);
     let planes = city.planes().planes.iter().filter(upright).filter(inside);
     quantile(&mut planes.map(|plane| plane.high.z - plane.low.z).collect::<Vec<f64>>(), share)
 }

@@ -1,10 +1,10 @@
 //! A pose of the scan with all that is asked of it before it becomes a start.
 //!
-//! Question     how does a pose stand once it is sharp, with its height and the lines of sight?
-//! Method       plan, height, score, sight in that order; the score is the scan's, with how far what was seen and the wall overlap in
-//!              height in the place of a hit, less what lines of sight deny
+//! Question     how does a pose stand once it is sharp, with its height?
+//! Method       plan, height, score in that order; the score is the scan's, with how far what was seen and the wall overlap in
+//!              height in the place of a hit. Lines of sight take from it what they deny (`compared`)
 
-use super::city_plan::CityPlan;
+use super::chance::Chance;
 use super::city_walls::CityWall;
 use super::cloud_walls::{CloudWall, CloudWalls};
 use super::heights::{HeightVote, stabbed};
@@ -12,16 +12,16 @@ use super::meeting::{Met, PLACES, met};
 use super::poses::PlanPose;
 use super::raster::{Question, classes_asked, height_code};
 use super::sharpen::{class_cos, sharpened};
-use super::sight::Sights;
+use super::wall_index::WallIndex;
 use super::weights::weights;
-use crate::limits::{Limits, PlaceSearchLimits};
+use crate::limits::PlaceSearchLimits;
 
 /// What poses are judged by.
 pub struct Judge<'a> {
-    pub plan: &'a CityPlan<'a>,
+    pub index: &'a WallIndex,
+    pub chance: &'a Chance,
     pub cloud: &'a CloudWalls,
-    pub sights: &'a Sights,
-    pub limits: &'a Limits,
+    pub limits: &'a PlaceSearchLimits,
 }
 
 /// A sharp pose.
@@ -30,7 +30,7 @@ pub struct JudgedPose {
     pub pose: PlanPose,
     /// Of the level frame's origin, the least and the most that most walls allow; city frame (local).
     pub heights_m: [f64; 2],
-    /// Walls, heights and lines of sight against chance, in standard deviations of it.
+    /// Walls and heights against chance, in standard deviations of it; once they were looked along, with lines of sight.
     pub z: f64,
 }
 
@@ -43,11 +43,11 @@ impl JudgedPose {
 impl Judge<'_> {
     /// `None` where no wall tells a height.
     pub fn judged(&self, pose: &PlanPose) -> Option<JudgedPose> {
-        let limits = &self.limits.place_search;
-        let pose = sharpened(pose, self.cloud, &self.plan.index, limits);
+        let limits = self.limits;
+        let pose = sharpened(pose, self.cloud, self.index, limits);
         let walls = self.cloud.strongest(limits.most_walls);
         let weights = weights(walls, pose.scale, limits);
-        let met = met(&self.plan.index, walls, &pose, limits.near_wall_m, class_cos(limits));
+        let met = met(self.index, walls, &pose, limits.near_wall_m, class_cos(limits));
         let heights_m = stabbed(&height_votes(walls, &weights, &met, pose.scale, limits))?;
         let height_m = (heights_m[0] + heights_m[1]) / 2.0;
         let overlap = |wall: &CloudWall, city: &CityWall| {
@@ -60,17 +60,15 @@ impl Judge<'_> {
             met.iter().flatten().map(|city| overlap(wall, city)).sum::<f64>() / PLACES.len() as f64
         };
         let hits: Vec<f64> = walls.iter().zip(&met).map(hit).collect();
-        let blocked = self.sights.blocked(&pose, height_m, self.plan.city, self.limits);
-        let z = self.z(&pose, &weights, &hits) * (1.0 - limits.sight_weight * blocked);
-        Some(JudgedPose { pose, heights_m, z })
+        Some(JudgedPose { pose, heights_m, z: self.z(&pose, &weights, &hits) })
     }
 
     fn z(&self, pose: &PlanPose, weights: &[f64], hits: &[f64]) -> f64 {
         let (mut above, mut variance) = (0.0, 1.0);
         for ((wall, w), hit) in self.cloud.walls.iter().zip(weights).zip(hits) {
-            let height = height_code(wall.height() * pose.scale - self.limits.place_search.overshoot_m);
+            let height = height_code(wall.height() * pose.scale - self.limits.overshoot_m);
             let classes = classes_asked(wall.azimuth() + pose.heading_rad, wall.sided);
-            let p = self.plan.raster.chance(Question { classes, height });
+            let p = self.chance.of(Question { classes, height });
             above += w * (hit - p);
             variance += w * w * p * (1.0 - p);
         }

@@ -11,9 +11,12 @@
 //! Source       derived here; nothing is drawn at random
 
 mod blocks;
-mod city_plan;
+mod chance;
 mod city_walls;
 mod cloud_walls;
+mod compared;
+mod districts;
+mod effort;
 mod heights;
 mod judged;
 mod meeting;
@@ -27,9 +30,10 @@ mod search;
 mod sharpen;
 mod sight;
 mod wall_index;
+mod views;
 mod weights;
 
 pub use city_walls::{CityWall, walls_of_planes};
 pub use outcome::{PlaceCandidate, PlaceObstacle, PlaceSearch};
 pub use prior::{Disc, HeadingPrior, PlacePrior};
-pub use search::search_places;
+pub use search::{PlaceTask, search_places, search_places_by_walls};

@@ -12,8 +12,12 @@ use crate::planes::Upright;
 pub struct PlaceSearch {
     /// All within reach of the best, the best first.
     pub candidates: Vec<PlaceCandidate>,
-    /// Poses that were looked at.
+    /// Poses that were looked at, or would have been had the time sufficed.
     pub poses_scanned: u64,
+    /// Share of the city's walls that poses were tied to: less than one where the time was over before.
+    pub share_searched: f64,
+    /// Poses that may be as good as the best and were not compared, because there are too many.
+    pub unexamined: usize,
     /// Why nothing was searched.
     pub obstacle: Option<PlaceObstacle>,
 }
@@ -47,13 +51,6 @@ pub enum PlaceObstacle {
 impl PlaceSearch {
     pub(super) fn refused(obstacle: PlaceObstacle) -> PlaceSearch {
         PlaceSearch { obstacle: Some(obstacle), ..PlaceSearch::default() }
-    }
-
-    /// Keeps those that may be right beside the best, the best first.
-    pub(super) fn keep_comparable(&mut self, share: f64) {
-        self.candidates.sort_by(|a, b| b.z.total_cmp(&a.z));
-        let least = self.candidates.first().map_or(0.0, |best| share * best.z);
-        self.candidates.retain(|candidate| candidate.z >= least);
     }
 
     /// The size of the space that was searched, as a logarithm to base 2: what evidence for one of its poses has to outweigh.

@@ -39,6 +39,8 @@ impl PlanPose {
 pub struct ScoredPose {
     pub pose: PlanPose,
     pub z: f64,
+    /// By which whoever made it tells it from others.
+    pub tag: u32,
 }
 
 /// The best of poses at distinct places, best first; of equal scores the one that stood first.

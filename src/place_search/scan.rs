@@ -11,15 +11,16 @@
 use rayon::prelude::*;
 
 use super::blocks::CELL_M;
-use super::city_plan::CityPlan;
+use super::chance::Chance;
 use super::city_walls::CityWall;
 use super::cloud_walls::{CloudWall, CloudWalls};
+use super::effort::Effort;
 use super::poses::{PlanPose, ScoredPose, distinct};
 use super::prior::{PlacePrior, wrapped};
 use super::raster::{Question, Raster, angle, classes_asked, height_code};
 use super::weights::weights;
 use crate::limits::PlaceSearchLimits;
-use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
+use crate::observer::Cancelled;
 
 /// Places of a wall that are looked up, as shares of its length; the middle one first.
 const PLACES: [f64; 3] = [0.5, 1.0 / 6.0, 5.0 / 6.0];
@@ -33,7 +34,10 @@ const LEAST_Z: f64 = 2.0;
 
 /// What the scan goes through.
 pub struct Scan<'a> {
-    pub plan: &'a CityPlan<'a>,
+    /// Those that poses are tied to.
+    pub walls: &'a [CityWall],
+    pub raster: &'a Raster,
+    pub chance: &'a Chance,
     pub cloud: &'a CloudWalls,
     pub scales: &'a [f64],
     pub prior: &'a PlacePrior,
@@ -41,37 +45,42 @@ pub struct Scan<'a> {
 }
 
 /// The best poses at distinct places, and how many were looked at.
-pub struct Scanned {
-    pub poses: Vec<ScoredPose>,
-    pub count: u64,
+struct Scanned {
+    poses: Vec<ScoredPose>,
+    count: u64,
 }
 
 impl Scan<'_> {
-    pub fn run(&self, anchors: &[usize], observer: &dyn Observer) -> Result<Scanned, Cancelled> {
+    /// The best poses at distinct places, of as many walls as there is time for.
+    pub fn run(&self, anchors: &[usize], effort: &mut Effort) -> Result<Vec<ScoredPose>, Cancelled> {
         let tied: Vec<Tied> = anchors.iter().map(|&anchor| Tied::new(self, anchor)).collect();
-        let long: Vec<&CityWall> =
-            self.plan.walls().iter().filter(|w| w.length_m() >= self.limits.least_tied_m).collect();
-        let blocks: Vec<&[&CityWall]> = long.chunks(BLOCK).collect();
-        let mut all = Scanned { poses: Vec::new(), count: 0 };
-        for (round, some) in blocks.chunks(ROUND).enumerate() {
-            check_cancelled(observer)?;
-            observer.progress(Stage::Places, (round * ROUND * BLOCK).min(long.len()), long.len());
-            let found: Vec<Scanned> = some.par_iter().map(|walls| self.block(walls, &tied)).collect();
-            for scanned in found {
-                all.count += scanned.count;
-                all.poses.extend(scanned.poses);
+        let long: Vec<&CityWall> = self.walls.iter().filter(|w| w.length_m() >= self.limits.least_tied_m).collect();
+        let keep = self.limits.keep * long.len().div_ceil(self.limits.walls_of_keep).max(1);
+        let (mut best, mut least_z) = (Vec::new(), LEAST_Z);
+        for round in long.chunks(ROUND * BLOCK) {
+            effort.begin_round()?;
+            if effort.is_over() {
+                break;
+            }
+            let blocks: Vec<&[&CityWall]> = round.chunks(BLOCK).collect();
+            let found: Vec<Scanned> = blocks.par_iter().map(|walls| self.block(walls, &tied, least_z)).collect();
+            effort.add(round.len(), found.iter().map(|scanned| scanned.count).sum());
+            best.extend(found.into_iter().flat_map(|scanned| scanned.poses));
+            if best.len() > SLACK * keep {
+                best = self.distinct(best, keep);
+                // What is no better than the last that is kept need not be told, whichever thread comes upon it: rounds are one after the other.
+                least_z = best.get(keep - 1).map_or(least_z, |last: &ScoredPose| last.z);
             }
         }
-        all.poses = self.distinct(all.poses);
-        Ok(all)
+        Ok(self.distinct(best, keep))
     }
 
-    fn distinct(&self, poses: Vec<ScoredPose>) -> Vec<ScoredPose> {
-        distinct(poses, self.limits.keep, self.limits.apart_m, self.cloud.radius)
+    fn distinct(&self, poses: Vec<ScoredPose>, keep: usize) -> Vec<ScoredPose> {
+        distinct(poses, keep, self.limits.apart_m, self.cloud.radius)
     }
 
-    fn block(&self, walls: &[&CityWall], tied: &[Tied]) -> Scanned {
-        let mut best = Best { poses: Vec::with_capacity(SLACK * self.limits.keep), least_z: LEAST_Z, count: 0 };
+    fn block(&self, walls: &[&CityWall], tied: &[Tied], least_z: f64) -> Scanned {
+        let mut best = Best { poses: Vec::with_capacity(SLACK * self.limits.keep), least_z, count: 0 };
         let mut laid = Laid::default();
         for wall in walls {
             for tied in tied {
@@ -80,7 +89,7 @@ impl Scan<'_> {
                 }
             }
         }
-        Scanned { poses: self.distinct(best.poses), count: best.count }
+        Scanned { poses: self.distinct(best.poses, self.limits.keep), count: best.count }
     }
 
     /// All scales and slides of one wall of the cloud on one of the city.
@@ -97,7 +106,7 @@ impl Scan<'_> {
             if scale > tallest {
                 break;
             }
-            laid.at_scale(scale, tied.at(step), &self.plan.raster);
+            laid.at_scale(scale, tied.at(step), self.chance);
             for slide in 0..slides as usize {
                 let at = wall.at((slide as f64 + 0.5) / slides * wall.length_m());
                 let center = [0, 1].map(|k| at[k] - scale * anchor[k]);
@@ -105,13 +114,13 @@ impl Scan<'_> {
                     continue;
                 }
                 best.count += 1;
-                if let Some(z) = self.z(at, laid, tied.at(step)).filter(|z| *z > best.least_z) {
-                    best.poses.push(ScoredPose { pose: PlanPose { center, heading_rad, scale }, z });
+                if let Some(z) = self.z(at, laid, tied.at(step), best.least_z).filter(|z| *z > best.least_z) {
+                    best.poses.push(ScoredPose { pose: PlanPose { center, heading_rad, scale }, z, tag: 0 });
                 }
             }
         }
         if best.poses.len() > (SLACK - 1) * self.limits.keep {
-            let kept = self.distinct(std::mem::take(&mut best.poses));
+            let kept = self.distinct(std::mem::take(&mut best.poses), self.limits.keep);
             if kept.len() == self.limits.keep {
                 best.least_z = kept.last().map_or(best.least_z, |last| last.z);
             }
@@ -125,14 +134,15 @@ impl Scan<'_> {
         expected.is_none_or(|[at, within]| wrapped(heading_rad - at).abs() <= within)
     }
 
-    /// The score of a pose that has the anchor's middle at a place; `None` where the first walls deny it.
+    /// The score of a pose that has the anchor's middle at a place; `None` where the first walls deny it, or where the others could not bring it
+    /// above `least_z`.
     #[inline]
-    fn z(&self, at: [f64; 2], laid: &Laid, step: StepOf) -> Option<f64> {
-        let [x, y] = [0, 1].map(|k| (at[k] - self.plan.raster.low[k]) / CELL_M);
+    fn z(&self, at: [f64; 2], laid: &Laid, step: StepOf, least_z: f64) -> Option<f64> {
+        let [x, y] = [0, 1].map(|k| (at[k] - self.raster.low[k]) / CELL_M);
         let meets = |wall: usize, place: usize| {
             let [dx, dy] = laid.scaled[wall][place];
             let question = Question { classes: laid.classes[wall], height: step.heights[wall] };
-            self.plan.raster.answers(x + dx, y + dy, question)
+            self.raster.answers(x + dx, y + dy, question)
         };
         let first = self.limits.looked_at_first.min(step.weights.len());
         let mut met = 0.0;
@@ -142,18 +152,21 @@ impl Scan<'_> {
         if met < step.least_met {
             return None;
         }
+        let places = PLACES.len() as f64;
+        // A sum of places that is short of this by more than all that is left is no longer of use.
+        let needed = (least_z / laid.per_sigma + laid.mean) * places;
         for wall in 0..first {
             let ends = u8::from(meets(wall, 1)) + u8::from(meets(wall, 2));
             met += f64::from(ends) * step.weights[wall];
         }
-        if met < PLACES.len() as f64 * step.least_met {
-            return None;
-        }
         for wall in first..step.weights.len() {
+            if met + places * step.rest[wall] < needed {
+                return None;
+            }
             let places = u8::from(meets(wall, 0)) + u8::from(meets(wall, 1)) + u8::from(meets(wall, 2));
             met += f64::from(places) * step.weights[wall];
         }
-        Some((met / PLACES.len() as f64 - laid.mean) * laid.per_sigma)
+        Some((met / places - laid.mean) * laid.per_sigma)
     }
 }
 
@@ -170,6 +183,8 @@ struct Tied {
     others: Vec<CloudWall>,
     /// Step by step.
     weights: Vec<f64>,
+    /// Of each wall and all after it.
+    rest: Vec<f64>,
     heights: Vec<u64>,
     /// For each step the weight that the walls that are looked at first must meet, with their middles and with all places.
     least_met: Vec<f64>,
@@ -179,6 +194,7 @@ struct Tied {
 #[derive(Clone, Copy)]
 struct StepOf<'a> {
     weights: &'a [f64],
+    rest: &'a [f64],
     heights: &'a [u64],
     least_met: f64,
 }
@@ -200,7 +216,11 @@ impl Tied {
         let first = |of_step: &[f64]| of_step.iter().take(limits.looked_at_first).sum::<f64>();
         let least = |of_step: &[f64]| limits.least_share * first(of_step);
         let least_met = weights.chunks(others.len().max(1)).map(least).collect();
-        Tied { anchor: walls[anchor], weights, heights, least_met, others }
+        let mut rest = weights.clone();
+        for of_step in rest.chunks_mut(others.len().max(1)) {
+            (1..of_step.len()).rev().for_each(|wall| of_step[wall - 1] += of_step[wall]);
+        }
+        Tied { anchor: walls[anchor], weights, rest, heights, least_met, others }
     }
 
     /// Both headings where the side is not known.
@@ -210,7 +230,12 @@ impl Tied {
 
     fn at(&self, step: usize) -> StepOf<'_> {
         let range = step * self.others.len()..(step + 1) * self.others.len();
-        StepOf { weights: &self.weights[range.clone()], heights: &self.heights[range], least_met: self.least_met[step] }
+        StepOf {
+            weights: &self.weights[range.clone()],
+            rest: &self.rest[range.clone()],
+            heights: &self.heights[range],
+            least_met: self.least_met[step],
+        }
     }
 }
 
@@ -241,13 +266,13 @@ impl Laid {
         self.scaled.resize(self.offsets.len(), [[0.0; 2]; 3]);
     }
 
-    fn at_scale(&mut self, scale: f64, step: StepOf, raster: &Raster) {
+    fn at_scale(&mut self, scale: f64, step: StepOf, chance: &Chance) {
         for (scaled, offset) in self.scaled.iter_mut().zip(&self.offsets) {
             *scaled = offset.map(|place| place.map(|c| c * scale));
         }
         let (mut mean, mut variance) = (0.0, 1.0);
         for ((weight, height), classes) in step.weights.iter().zip(step.heights).zip(&self.classes) {
-            let p = raster.chance(Question { classes: *classes, height: *height });
+            let p = chance.of(Question { classes: *classes, height: *height });
             mean += weight * p;
             variance += weight * weight * p * (1.0 - p);
         }

@@ -29,6 +29,11 @@ impl Sights {
         Sights { lines: some.map(|ends| ends.map(|end| cloud.level_from_sfm.apply(end))).collect() }
     }
 
+    /// How far from the middle they reach, in plan.
+    pub fn reach(&self) -> f64 {
+        self.lines.iter().flatten().map(|end| end.x.hypot(end.y)).fold(0.0, f64::max)
+    }
+
     /// The share of them that walls block; 0 where nobody is known to have seen anything.
     pub fn blocked(&self, pose: &PlanPose, height_m: f64, city: &PreparedCity, limits: &Limits) -> f64 {
         let in_city = |p: &Point3<f64>| {

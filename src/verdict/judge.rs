@@ -78,6 +78,40 @@ impl Decision {
     }
 }
 
+/// What a search did not look at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftOut {
+    /// Share of the city that was searched before the time was over.
+    pub share_searched: f64,
+    /// Poses that may be as good as the best and were not compared.
+    pub unexamined: usize,
+}
+
+impl Decision {
+    /// The same where a part of the search was not made: whatever was found, a pose as good may be there.
+    pub fn with_left_out(self, left_out: &LeftOut) -> Decision {
+        let LeftOut { share_searched, unexamined } = *left_out;
+        let told = if share_searched < 1.0 {
+            format!(
+                "{:.1} % of the city were searched in the time given, and a place as good may be in the rest; more time (--budget), --near or a \
+                 start would settle it",
+                100.0 * share_searched
+            )
+        } else if unexamined > 0 {
+            format!(
+                "{unexamined} more places of the city may be as good and were not compared; --near or a start would settle it"
+            )
+        } else {
+            return self;
+        };
+        let verdict = match self.verdict {
+            Verdict::Aligned | Verdict::Undetermined | Verdict::Ambiguous => Verdict::Ambiguous,
+            Verdict::Failed => Verdict::Failed,
+        };
+        Decision { verdict, reason: format!("{told} ({})", self.reason), ..self }
+    }
+}
+
 /// What the poses that are compared were chosen from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SearchSpace {

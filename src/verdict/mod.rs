@@ -19,4 +19,4 @@ pub use alignment::{
     Support, Verdict,
 };
 pub use freedoms::{GivenScale, PoseInformation, freedoms};
-pub use judge::{Decision, Evidence, Rival, SearchSpace, judge};
+pub use judge::{Decision, Evidence, LeftOut, Rival, SearchSpace, judge};

@@ -11,14 +11,14 @@ fn lengths_are_told_as_a_person_says_them() {
 /// What stands in the way of a cloud of four houses from a start that is changed.
 fn met(change: impl FnOnce(&mut Similarity, &mut StartSigmas)) -> Option<Obstacle> {
     let block = Block::four_houses().with_ground();
-    let (city, survey) = (PreparedCity::new(block.city().unwrap()), block.cloud(&CloudOptions::default()));
+    let (city, survey) = (block.city().unwrap(), block.cloud(&CloudOptions::default()));
     let limits = Limits::default();
     let patches = patches(&survey.sfm, None, &limits.patches);
-    let mut pose = survey.city_from_sfm.relative_to(&city.model.origin);
+    let mut pose = survey.city_from_sfm.relative_to(&city.origin);
     let mut sigmas = StartSigmas::default();
     change(&mut pose, &mut sigmas);
     of_inputs(&city, &survey.sfm, &patches)
-        .or_else(|| of_start(&city.model, &patches, &Start::new(pose, sigmas).unwrap(), &limits))
+        .or_else(|| of_start(&city, &patches, &Start::new(pose, sigmas).unwrap(), &limits))
 }
 
 #[test]
@@ -52,11 +52,11 @@ fn a_scale_of_no_place_is_named() {
 
 #[test]
 fn a_city_without_facets_and_a_cloud_without_points_or_planes_are_named() {
-    let empty = PreparedCity::new(CityModel::default());
+    let empty = CityModel::default();
     let nothing = Reconstruction::default();
     let none = Patches::default();
     assert_eq!(of_inputs(&empty, &nothing, &none), Some(Obstacle::EmptyCity));
-    let city = PreparedCity::new(Block::four_houses().city().unwrap());
+    let city = Block::four_houses().city().unwrap();
     assert_eq!(of_inputs(&city, &nothing, &none), Some(Obstacle::NoPoints { images: 0 }));
     let alone = Reconstruction { points: vec![Point3::origin()], ..Reconstruction::default() };
     let found = of_inputs(&city, &alone, &none).unwrap();

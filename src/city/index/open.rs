@@ -68,6 +68,13 @@ impl CityIndex {
         self.read(&self.touched(within))
     }
 
+    /// What stands in the blocks that any of some boxes of plan touches.
+    pub fn read_about(&self, boxes: &[PlanBox]) -> Result<CityModel, CityError> {
+        let local: Vec<PlanBox> = boxes.iter().map(|own| own.relative_to(self.words.origin)).collect();
+        let is_touched = |entry: &&BlockEntry| local.iter().any(|own| own.gap_m(&box_of(entry)) == 0.0);
+        self.read(&self.file.entries.iter().filter(is_touched).collect::<Vec<_>>())
+    }
+
     /// The walls of the blocks that a box touches, which somebody could have seen; metres about the city's origin.
     pub fn walls_within(&self, within: &PlanBox) -> Result<Vec<WallRecord>, CityError> {
         let sights: Result<Vec<BlockSight>, IndexFault> =

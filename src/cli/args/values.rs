@@ -1,6 +1,7 @@
 //! Values of options: what is typed, checked at once.
 
 use std::str::FromStr;
+use std::time::Duration;
 
 use crate::place_search::Disc;
 
@@ -32,6 +33,14 @@ impl FromStr for UpArg {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale(pub f64);
 
+/// `--scale-range`: metres per reconstruction unit, the least and the most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleRange(pub [f64; 2]);
+
+/// `--budget`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget(pub Duration);
+
 /// A chance, above 0 and below 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probability(pub f64);
@@ -54,6 +63,27 @@ impl FromStr for Scale {
         match numbers(text).as_deref() {
             Some([scale]) if *scale > 0.0 => Ok(Scale(*scale)),
             _ => Err("expected a finite number above 0: metres per reconstruction unit".into()),
+        }
+    }
+}
+
+impl FromStr for Budget {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Budget, String> {
+        let seconds = numbers(text).and_then(|numbers| <[f64; 1]>::try_from(numbers).ok());
+        let budget = seconds.filter(|[seconds]| *seconds > 0.0).and_then(|[s]| Duration::try_from_secs_f64(s).ok());
+        budget.map(Budget).ok_or_else(|| "expected a number above 0: seconds".into())
+    }
+}
+
+impl FromStr for ScaleRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<ScaleRange, String> {
+        match numbers(text).as_deref() {
+            Some(&[least, most]) if least > 0.0 && least <= most => Ok(ScaleRange([least, most])),
+            _ => Err("expected LEAST,MOST: two finite numbers above 0, metres per reconstruction unit".into()),
         }
     }
 }

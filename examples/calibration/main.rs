@@ -13,6 +13,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use cityweld::synthetic::Errand;
 use clap::Parser;
 use rayon::prelude::*;
 
@@ -35,6 +36,9 @@ struct Arguments {
     /// The first capture
     #[arg(long, default_value_t = 0)]
     first: u64,
+    /// Asks about the right place alone: more captures in the same time
+    #[arg(long)]
+    right_place: bool,
     /// Takes one fault after the other away from this capture, instead
     #[arg(long, value_name = "CAPTURE")]
     cure: Option<u64>,
@@ -50,12 +54,14 @@ fn main() -> std::io::Result<()> {
         return Ok(());
     }
     let begun = Instant::now();
+    let errands = if arguments.right_place { &Errand::ALL[..1] } else { &Errand::ALL[..] };
     let mut file = arguments.runs.as_ref().map(std::fs::File::create).transpose()?;
     let end = arguments.first.saturating_add(arguments.captures);
     let (mut runs, mut next) = (Vec::new(), arguments.first);
     while next < end && begun.elapsed() < Duration::from_secs_f64(60.0 * arguments.minutes) {
         let until = end.min(next + AT_ONCE);
-        let made: Vec<Vec<Run>> = (next..until).into_par_iter().map(|index| runs_of(arguments.seed, index)).collect();
+        let made: Vec<Vec<Run>> =
+            (next..until).into_par_iter().map(|index| runs_of(arguments.seed, index, errands)).collect();
         for run in made.iter().flatten() {
             if let Some(file) = &mut file {
                 writeln!(file, "{}", run.line())?;

@@ -16,14 +16,18 @@ pub struct Run {
     pub fault: Option<&'static str>,
     pub errand: Errand,
     pub assessment: Assessment,
+    /// Evidence of the best pose, what is needed, and the most that chance has, bits.
+    pub bits: [f64; 3],
+    /// Planes that speak for it, of those that the cloud saw.
+    pub planes: [usize; 2],
 }
 
 impl Run {
     /// One line by which it is found again.
     pub fn line(&self) -> String {
-        let a = &self.assessment;
+        let (a, [bits, needed, by_chance], [speaking, seen]) = (&self.assessment, self.bits, self.planes);
         format!(
-            "case {} {}, {}{}: {:?}, error {:.2} m, stated {:.2} m; held {}: error {:.2} m, stated {:.2} m, chi-square {:.1}; {}",
+            "case {} {}, {}{}: {:?}, {bits:.1} bits of {needed:.1}, by chance {by_chance:.1}, {speaking} planes of {seen}; error {:.2} m, stated {:.2} m; held {}: error {:.2} m, stated {:.2} m, chi-square {:.1}; {}",
             self.index,
             self.setting.name(),
             self.errand.name(),
@@ -40,8 +44,8 @@ impl Run {
     }
 }
 
-/// All runs of capture `index`: of mixed faults with all errands, or of one fault at the right place.
-pub fn runs_of(seed: u64, index: u64) -> Vec<Run> {
+/// All runs of capture `index`: of mixed faults with these errands, the right place first, or of one fault at the right place.
+pub fn runs_of(seed: u64, index: u64, errands: &[Errand]) -> Vec<Run> {
     if index % ALONE == ALONE - 1 {
         let faults = Levels::FAULTS.len() as u64;
         let number = index / ALONE;
@@ -49,7 +53,7 @@ pub fn runs_of(seed: u64, index: u64) -> Vec<Run> {
     }
     let Some(case) = Case::drawn(seed, mixed_number(index)) else { return Vec::new() };
     // Elsewhere no pose is right, or the start's place says nothing.
-    let errands = if Setting::TOLD_APART.contains(&case.setting) { &Errand::ALL[..] } else { &Errand::ALL[..1] };
+    let errands = if Setting::TOLD_APART.contains(&case.setting) { errands } else { &Errand::ALL[..1] };
     asked(&case, index, None, errands)
 }
 
@@ -82,7 +86,18 @@ pub fn asked(case: &Case, index: u64, fault: Option<&'static str>, errands: &[Er
             (align(&city, sfm, None, &options, &()).unwrap(), Some(&case.capture.survey.city_from_sfm))
         };
         let assessment = Assessment::new(&alignment, truth, &points);
-        Some(Run { index, setting: case.setting, levels: case.levels, fault, errand: *errand, assessment })
+        let told = &alignment.certainty;
+        let (bits, planes) = ([told.bits, told.needed_bits, told.most_bits_by_chance], [told.speaking, told.witnesses]);
+        Some(Run {
+            index,
+            setting: case.setting,
+            levels: case.levels,
+            fault,
+            errand: *errand,
+            assessment,
+            bits,
+            planes,
+        })
     };
     errands.iter().filter_map(run).collect()
 }

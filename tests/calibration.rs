@@ -8,7 +8,7 @@ use cityweld::synthetic::{Errand, Outcome, Setting};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-use runs::{Run, runs_of};
+use runs::{Questions, Run, runs_of};
 
 const SEED: u64 = 20;
 const CAPTURES: u64 = 40;
@@ -27,7 +27,7 @@ fn all() -> &'static [Run] {
     static RUNS: OnceLock<Vec<Run>> = OnceLock::new();
     RUNS.get_or_init(|| {
         let made: Vec<Vec<Run>> =
-            (0..CAPTURES).into_par_iter().map(|index| runs_of(SEED, index, &Errand::ALL)).collect();
+            (0..CAPTURES).into_par_iter().map(|index| runs_of(SEED, index, Questions::ALL)).collect();
         made.into_iter().flatten().collect()
     })
 }

@@ -1,8 +1,8 @@
 //! Cures: one capture again, with one fault after the other taken away. What makes its answer wrong?
 
-use cityweld::synthetic::{Case, Errand, Fault, Levels};
+use cityweld::synthetic::{Case, Fault, Levels};
 
-use crate::runs::{Run, asked, mixed_number};
+use crate::runs::{Questions, Run, asked, mixed_number};
 
 /// At the right place; the first line is the capture as it is.
 pub fn print(seed: u64, index: u64) {
@@ -21,5 +21,5 @@ fn cured(seed: u64, number: u64, case: &Case, (name, change): &Fault) -> Vec<Run
     let mut levels = case.levels;
     change(&mut levels);
     let cured = Case::with(seed, number, case.setting, &levels);
-    cured.map_or(Vec::new(), |case| asked(&case, number, Some(*name), &[Errand::RightPlace]))
+    cured.map_or(Vec::new(), |case| asked(&case, number, Some(*name), Questions::ALL.of_first()))
 }

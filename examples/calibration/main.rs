@@ -17,10 +17,13 @@ use cityweld::synthetic::Errand;
 use clap::Parser;
 use rayon::prelude::*;
 
-use runs::{Run, runs_of};
+use runs::{Questions, Run, runs_of};
 
 /// Captures between two looks at the clock; a few for each core, so that none waits long for the last one.
 const AT_ONCE: u64 = 16;
+
+/// In the capture's own town and in another one, nothing of the place told.
+const NO_START: Questions = Questions { errands: &[Errand::RightPlace, Errand::ForeignTown], with_start: false };
 
 #[derive(Parser)]
 struct Arguments {
@@ -39,6 +42,9 @@ struct Arguments {
     /// Asks about the right place alone: more captures in the same time
     #[arg(long)]
     right_place: bool,
+    /// Asks with nothing known of the place, in the capture's own town and in another one
+    #[arg(long, conflicts_with = "right_place")]
+    no_start: bool,
     /// Takes one fault after the other away from this capture, instead
     #[arg(long, value_name = "CAPTURE")]
     cure: Option<u64>,
@@ -54,14 +60,18 @@ fn main() -> std::io::Result<()> {
         return Ok(());
     }
     let begun = Instant::now();
-    let errands = if arguments.right_place { &Errand::ALL[..1] } else { &Errand::ALL[..] };
+    let questions = match (arguments.right_place, arguments.no_start) {
+        (_, true) => NO_START,
+        (true, false) => Questions::ALL.of_first(),
+        (false, false) => Questions::ALL,
+    };
     let mut file = arguments.runs.as_ref().map(std::fs::File::create).transpose()?;
     let end = arguments.first.saturating_add(arguments.captures);
     let (mut runs, mut next) = (Vec::new(), arguments.first);
     while next < end && begun.elapsed() < Duration::from_secs_f64(60.0 * arguments.minutes) {
         let until = end.min(next + AT_ONCE);
         let made: Vec<Vec<Run>> =
-            (next..until).into_par_iter().map(|index| runs_of(arguments.seed, index, errands)).collect();
+            (next..until).into_par_iter().map(|index| runs_of(arguments.seed, index, questions)).collect();
         for run in made.iter().flatten() {
             if let Some(file) = &mut file {
                 writeln!(file, "{}", run.line())?;

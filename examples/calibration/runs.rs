@@ -1,10 +1,28 @@
 //! Runs: the program asked about one case after the other, and what its answers were worth.
 
 use cityweld::synthetic::{Assessment, Case, Errand, Fault, Levels, Setting};
-use cityweld::{AlignOptions, CityModel, PreparedCity, align};
+use cityweld::{AlignOptions, CityModel, PlacePrior, PreparedCity, align};
 
 /// Every fourth capture shows one fault alone.
 const ALONE: u64 = 4;
+
+/// What is asked of a capture.
+#[derive(Clone, Copy, Debug)]
+pub struct Questions {
+    /// The right place first.
+    pub errands: &'static [Errand],
+    /// Whether the errand's start is told, or nothing of the place.
+    pub with_start: bool,
+}
+
+impl Questions {
+    pub const ALL: Questions = Questions { errands: &Errand::ALL, with_start: true };
+
+    /// At the right place alone.
+    pub fn of_first(self) -> Questions {
+        Questions { errands: &self.errands[..1], ..self }
+    }
+}
 
 /// One answer.
 #[derive(Clone, Debug)]
@@ -44,17 +62,18 @@ impl Run {
     }
 }
 
-/// All runs of capture `index`: of mixed faults with these errands, the right place first, or of one fault at the right place.
-pub fn runs_of(seed: u64, index: u64, errands: &[Errand]) -> Vec<Run> {
+/// All runs of capture `index`: of mixed faults with all questions, or of one fault with the first.
+pub fn runs_of(seed: u64, index: u64, questions: Questions) -> Vec<Run> {
     if index % ALONE == ALONE - 1 {
         let faults = Levels::FAULTS.len() as u64;
         let number = index / ALONE;
-        return alone(seed, index, number / faults, &Levels::FAULTS[(number % faults) as usize]);
+        let fault = &Levels::FAULTS[(number % faults) as usize];
+        return alone(seed, index, number / faults, fault, questions.of_first());
     }
     let Some(case) = Case::drawn(seed, mixed_number(index)) else { return Vec::new() };
     // Elsewhere no pose is right, or the start's place says nothing.
-    let errands = if Setting::TOLD_APART.contains(&case.setting) { errands } else { &Errand::ALL[..1] };
-    asked(&case, index, None, errands)
+    let told_apart = Setting::TOLD_APART.contains(&case.setting);
+    asked(&case, index, None, if told_apart { questions } else { questions.of_first() })
 }
 
 /// The number among the captures of mixed faults, without gaps.
@@ -63,22 +82,26 @@ pub fn mixed_number(index: u64) -> u64 {
 }
 
 /// The same capture for every fault: what differs is the fault.
-fn alone(seed: u64, index: u64, capture: u64, (name, change): &Fault) -> Vec<Run> {
+fn alone(seed: u64, index: u64, capture: u64, (name, change): &Fault, questions: Questions) -> Vec<Run> {
     let setting = Setting::TOLD_APART[(capture % Setting::TOLD_APART.len() as u64) as usize];
     let mut levels = Levels::good();
     change(&mut levels);
     let case = Case::with(seed ^ 0xfa17, capture, setting, &levels);
-    case.map_or(Vec::new(), |case| asked(&case, index, Some(*name), &Errand::ALL[..1]))
+    case.map_or(Vec::new(), |case| asked(&case, index, Some(*name), questions))
 }
 
-/// The case, asked about each errand.
-pub fn asked(case: &Case, index: u64, fault: Option<&'static str>, errands: &[Errand]) -> Vec<Run> {
+/// The case, asked these questions.
+pub fn asked(case: &Case, index: u64, fault: Option<&'static str>, questions: Questions) -> Vec<Run> {
     let prepared = |city: CityModel| PreparedCity::new(city);
     let Some(city) = case.city().ok().map(prepared) else { return Vec::new() };
     let points = case.points();
     let run = |errand: &Errand| {
         let request = case.request(*errand);
-        let options = AlignOptions::new(request.start).with_fixed_scale(request.fixed_scale);
+        let options = match questions.with_start {
+            true => AlignOptions::new(request.start),
+            false => AlignOptions::anywhere(PlacePrior::default()),
+        };
+        let options = options.with_fixed_scale(request.fixed_scale);
         let sfm = &case.capture.survey.sfm;
         let (alignment, truth) = if *errand == Errand::ForeignTown {
             (align(&prepared(case.foreign_city().ok()?), sfm, None, &options, &()).unwrap(), None)
@@ -99,5 +122,5 @@ pub fn asked(case: &Case, index: u64, fault: Option<&'static str>, errands: &[Er
             planes,
         })
     };
-    errands.iter().filter_map(run).collect()
+    questions.errands.iter().filter_map(run).collect()
 }

@@ -30,6 +30,18 @@
 //! Frames stand in names: `city_from_sfm` takes coordinates of the reconstruction to those of the city. Lengths are metres of the
 //! city, angles radians where the name does not say otherwise. The same input and seed give the same bytes on any number of threads.
 #![forbid(unsafe_code)]
+// Nothing outside tests ends the program by name: what input can bring about is an error, what it cannot is written without.
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable,
+        clippy::todo,
+        clippy::string_slice
+    )
+)]
 
 mod limits;
 mod observer;

@@ -78,3 +78,64 @@ fn first_at_place(positions: &[Point3<f64>]) -> Vec<u32> {
     }
     first
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::city::CityRole;
+    use crate::format::obj::read_obj;
+    use crate::geometry::Vector3;
+    use crate::random::Random;
+
+    fn source(text: &str) -> Source {
+        Source::from_obj(Path::new("a.obj"), CityRole::City, read_obj(text.as_bytes()).unwrap())
+    }
+
+    /// Triangles on corners of a small lattice, of which many are the same place.
+    fn lattice(random: &mut Random, triangles: usize) -> String {
+        let mut text = String::new();
+        for _ in 0..3 * triangles {
+            let [x, y, z] = [(); 3].map(|()| random.below(3) as f64 - 1.0);
+            text += &format!("v {x} {y} {z}\n");
+        }
+        (0..triangles).for_each(|at| text += &format!("f {} {} {}\n", 3 * at + 1, 3 * at + 2, 3 * at + 3));
+        text
+    }
+
+    #[test]
+    fn joins_what_comparing_every_pair_joins_across_files() {
+        let mut random = Random::stream(3, 0);
+        for _ in 0..20 {
+            let sources = [source(&lattice(&mut random, 6)), source(&lattice(&mut random, 4))];
+            let mut model = CityModel { origin: Vector3::new(1.0, 2.0, 3.0), ..CityModel::default() };
+            let vertex_of = join_vertices(&mut model, &mut Warnings::default(), &sources).unwrap();
+            let mut expected: Vec<Point3<f64>> = Vec::new();
+            for source in &sources {
+                for &corner in &source.corners {
+                    let place = source.positions[corner as usize] - model.origin;
+                    if !expected.contains(&place) {
+                        expected.push(place);
+                    }
+                }
+            }
+            assert_eq!(model.vertices, expected, "each place once, in the order of first use");
+            for (source, vertex_of) in sources.iter().zip(&vertex_of) {
+                for &corner in &source.corners {
+                    let joined = model.vertices[vertex_of[corner as usize] as usize];
+                    assert_eq!(joined, source.positions[corner as usize] - model.origin);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_two_zeros_are_one_place_and_what_no_face_uses_is_left_out() {
+        let sources = [source("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nv -0 -0 -0\nv 0 0 1\nf 1 2 3\nf 5 2 6\n")];
+        let mut model = CityModel::default();
+        let vertex_of = join_vertices(&mut model, &mut Warnings::default(), &sources).unwrap();
+        assert_eq!(model.vertices.len(), 4);
+        assert_eq!((vertex_of[0][0], vertex_of[0][3]), (vertex_of[0][4], UNUSED));
+    }
+}

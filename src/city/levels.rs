@@ -128,3 +128,92 @@ fn head_of(objects: &[ObjectRecord], object: usize) -> usize {
     }
     head
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::surfaces::SurfaceRecord;
+
+    /// Objects by class and parent, and a polygon for each object and level.
+    fn file(objects: &[(&str, Option<u32>)], polygons: &[(u32, Option<Lod>)]) -> SurfaceFile {
+        let object = |(at, &(class, parent)): (usize, &(&str, Option<u32>))| ObjectRecord {
+            id: format!("o{at}"),
+            class: class.into(),
+            parent,
+        };
+        let surface = |&(object, lod): &(u32, Option<Lod>)| SurfaceRecord {
+            object,
+            first_ring: 0,
+            ring_count: 1,
+            lod,
+            kind: None,
+            shell: None,
+        };
+        SurfaceFile {
+            objects: objects.iter().enumerate().map(object).collect(),
+            surfaces: polygons.iter().map(surface).collect(),
+            ..SurfaceFile::default()
+        }
+    }
+
+    const fn lod(whole: u8, step: u8) -> Option<Lod> {
+        Some(Lod(whole, step))
+    }
+
+    #[test]
+    fn each_object_has_its_own_highest() {
+        let file = file(
+            &[("Building", None), ("Building", None)],
+            &[(0, lod(1, 2)), (0, lod(2, 2)), (1, lod(1, 3)), (0, lod(2, 2)), (1, lod(0, 0))],
+        );
+        assert_eq!(choose(&file, CityLod::Highest, CityRole::City).surfaces, [1, 2, 3]);
+        let limited = choose(&file, CityLod::UpTo(Lod(1, u8::MAX)), CityRole::City);
+        assert_eq!(limited.surfaces, [0, 2]);
+        let nothing = choose(&file, CityLod::UpTo(Lod(1, 0)), CityRole::City);
+        assert_eq!((nothing.surfaces.len(), nothing.too_high.count, nothing.footprints.count), (0, 4, 1));
+        assert_eq!((nothing.too_high.first_object, nothing.footprints.first_object), (0, 1));
+    }
+
+    #[test]
+    fn walls_of_a_building_are_not_taken_again_from_a_coarser_part_of_it() {
+        let objects = [("Building", None), ("BuildingPart", Some(0)), ("BuildingInstallation", Some(0))];
+        let file = file(&objects, &[(0, lod(1, 2)), (1, lod(2, 2)), (2, lod(1, 0))]);
+        // The installation is a thing of its own.
+        assert_eq!(choose(&file, CityLod::Highest, CityRole::City).surfaces, [1, 2]);
+        assert_eq!(choose(&file, CityLod::UpTo(Lod(1, 9)), CityRole::City).surfaces, [0, 2]);
+    }
+
+    #[test]
+    fn footprints_are_walls_of_nothing_but_ground_of_terrain() {
+        let file = file(&[("Building", None), ("TINRelief", None)], &[(0, lod(0, 0)), (1, lod(0, 0)), (0, None)]);
+        // A polygon of no level stands above a footprint.
+        assert_eq!(choose(&file, CityLod::Highest, CityRole::City).surfaces, [1, 2]);
+        let alone = self::file(&[("Building", None)], &[(0, lod(0, 1))]);
+        assert_eq!(choose(&alone, CityLod::Highest, CityRole::City).footprints, Passed { count: 1, first_object: 0 });
+        assert_eq!(choose(&alone, CityLod::Highest, CityRole::Terrain).surfaces, [0]);
+    }
+
+    #[test]
+    fn every_polygon_is_taken_or_passed_over_for_one_reason() {
+        let objects = [("Building", None), ("BuildingPart", Some(0)), ("BuildingPart", Some(1)), ("Road", None)];
+        let levels = [None, lod(0, 0), lod(1, 0), lod(1, 3), lod(2, 2)];
+        let all = (0..4_u32).flat_map(|object| levels.map(|level| (object, level)));
+        let is_there =
+            |(object, level): &(u32, Option<Lod>)| (object + level.map_or(0, |level| u32::from(level.0))) % 3 > 0;
+        let polygons: Vec<_> = all.filter(is_there).collect();
+        let file = file(&objects, &polygons);
+        let mut taken_before = 0;
+        for limit in [Lod(0, 9), Lod(1, 0), Lod(1, 9), Lod(3, 0)] {
+            let chosen = choose(&file, CityLod::UpTo(limit), CityRole::City);
+            assert!(chosen.surfaces.is_sorted());
+            for &at in &chosen.surfaces {
+                let level = file.surfaces[at as usize].lod;
+                assert!(level.is_none_or(|level| level <= limit && level.0 > 0), "{level:?} above {limit}");
+            }
+            let all = chosen.surfaces.len() as u64 + chosen.footprints.count + chosen.too_high.count;
+            assert!(all <= file.surfaces.len() as u64);
+            taken_before = taken_before.max(chosen.surfaces.len());
+        }
+        assert!(taken_before > 0);
+    }
+}

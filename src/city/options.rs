@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::levels::CityLod;
-use crate::format::footprints::FootprintFields;
+use super::warning::CityDefect;
+use crate::format::footprints::{FootprintFields, is_of_footprints};
+use crate::format::surfaces::SurfaceFile;
 
 /// How to take city files.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,6 +57,24 @@ impl CityOptions {
 
     pub fn with_crs(self, crs: impl Into<String>) -> CityOptions {
         CityOptions { crs: Some(crs.into()), ..self }
+    }
+
+    /// Options that none of the files has anything for.
+    pub(super) fn without_use(&self, files: &[&SurfaceFile]) -> Vec<CityDefect> {
+        let has_levels = files.iter().any(|file| file.surfaces.iter().any(|surface| surface.lod.is_some()));
+        let has_footprints = files.iter().any(|file| is_of_footprints(file));
+        let FootprintFields { height, base } = &self.footprints;
+        let (levels, footprints) = ("levels of detail in its files", "footprints (Shapefile, GeoPackage)");
+        let unused = [
+            (self.lod != CityLod::Highest && !has_levels, "--lod", levels),
+            (height.is_some() && !has_footprints, "--height-field", footprints),
+            (base.is_some() && !has_footprints, "--base-field", footprints),
+        ];
+        let defect = |(_, option, lacks): (bool, &'static str, &'static str)| CityDefect::OptionWithoutUse {
+            option: option.into(),
+            lacks: lacks.into(),
+        };
+        unused.into_iter().filter(|unused| unused.0).map(defect).collect()
     }
 }
 

@@ -97,6 +97,7 @@ pub fn read_city_contents(city: &[PathBuf], options: &CityOptions) -> Result<Vec
 fn placed(parsed: Vec<Parsed>, options: &CityOptions) -> Result<(CityModel, Vec<CityWarning>), CityError> {
     let surfaces: Vec<&SurfaceFile> = parsed.iter().filter_map(Parsed::surfaces).collect();
     let frame = Frame::of(&surfaces, options);
+    let without_use = options.without_use(&surfaces);
     let up_of_first = parsed.first().map_or(CityUp::Z, |file| file.up(options));
     let sources: Vec<Source> = parsed.into_iter().map(|file| file.into_source(&frame, options)).collect();
     let sources = keep_filled(sources)?;
@@ -110,7 +111,11 @@ fn placed(parsed: Vec<Parsed>, options: &CityOptions) -> Result<(CityModel, Vec<
     let odd_heights = guess.map(|guess| CityDefect::OddHeights { unit: guess.unit, height: guess.height });
     let shared_names = shared_names(&sources);
     let mut model = build(sources)?;
-    let decided = frame.defects.iter().cloned().chain(odd_heights).chain(odd_up(&model, up_of_first));
+    let decided = without_use
+        .into_iter()
+        .chain(frame.defects.iter().cloned())
+        .chain(odd_heights)
+        .chain(odd_up(&model, up_of_first));
     let warnings = decided.map(of_city).chain(shared_names).collect();
     model.crs = frame.crs;
     Ok((model, warnings))

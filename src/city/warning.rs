@@ -85,6 +85,8 @@ pub enum CityDefect {
     SameObject,
     /// North, or the latitude, is written before east; exchanged. By the volume of closed shells, so many of them, or by the reference system.
     NorthFirst { negative: u64, of: u64 },
+    /// An option that no file of the city has anything for; passed over.
+    OptionWithoutUse { option: Cow<'static, str>, lacks: Cow<'static, str> },
     /// Coordinates are degrees; projected about this place, in degrees.
     Degrees { latitude: f64, longitude: f64, is_latitude_first: bool },
     /// Files, or what was given, name different reference systems; the first is used for all.

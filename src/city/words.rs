@@ -146,6 +146,7 @@ fn sentence(defect: &CityDefect) -> Option<String> {
             escaped(first),
             escaped(other)
         ),
+        CityDefect::OptionWithoutUse { option, lacks } => format!("{option} changes nothing: the city has no {lacks}"),
         CityDefect::OddHeights { unit: unit @ CityUnit::Foot, height } => format!(
             "the middle house is {height:.0} high: if coordinates are feet, say --city-unit {} (or us-ft)",
             unit.word()

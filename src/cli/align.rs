@@ -85,7 +85,7 @@ fn tell_start(inputs: &Inputs, plan: &AlignPlan, session: &Session) -> Result<Ou
     if session.common.json {
         voice.json(&start_report(start)?, None)?;
     } else {
-        voice.result(&summary::of_start(start, voice.seconds()), None)?;
+        voice.result(&summary::of_start(start, inputs.prior.near, voice.seconds()), None)?;
     }
     Ok(Outcome::Good)
 }

@@ -167,7 +167,7 @@ pub struct AlignArgs {
     pub budget: Option<Budget>,
     /// What every freedom must be held to, one sigma in metres at the scene's radius, for the verdict to be aligned [default: 0.35 or 1 % of
     /// the radius, whichever is more]
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub accuracy: Option<Accuracy>,
     /// Up in the reconstruction's frame: auto (walls, floors, cameras and start tell together), none (not used: the search turns
     /// freely, as far as three sigmas of the start's tilt), or X,Y,Z of any length
@@ -177,7 +177,7 @@ pub struct AlignArgs {
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
     /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
-    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',', allow_hyphen_values = true)]
     pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
@@ -229,7 +229,7 @@ pub struct MergeArgs {
     #[arg(long, value_name = "CHANCE", default_value = "0.001", allow_hyphen_values = true)]
     pub false_alarm: Probability,
     /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
-    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',', allow_hyphen_values = true)]
     pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,
@@ -326,7 +326,7 @@ pub struct ExportArgs {
     #[arg(long, value_name = "FORMATS", value_enum, value_delimiter = ',')]
     pub format: Vec<FormatArg>,
     /// Classes of a LAS, LAZ or COPC cloud whose points take part, such as 2,6 [default: all but noise, 7 and 18]
-    #[arg(long, value_name = "CLASSES", value_delimiter = ',')]
+    #[arg(long, value_name = "CLASSES", value_delimiter = ',', allow_hyphen_values = true)]
     pub classes: Vec<u8>,
     #[command(flatten)]
     pub city_options: CityArgs,

@@ -46,7 +46,8 @@ fn line_of(text: &str) -> String {
     let Some(_) = at(LONGEST_LINE) else { return line };
     let from_end = line.char_indices().rev().nth(LONGEST_LINE / 2 - 1).map(|(at, _)| at);
     let (head, tail) = (at(LONGEST_LINE / 2).unwrap_or_default(), from_end.unwrap_or_default());
-    format!("{} ... {}", &line[..head], &line[tail..])
+    let [head, tail] = [line.get(..head), line.get(tail..)].map(Option::unwrap_or_default);
+    format!("{head} ... {tail}")
 }
 
 impl Observer for Voice {

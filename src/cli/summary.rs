@@ -9,6 +9,7 @@ use crate::format::escaped;
 use crate::georeference::Estimate;
 use crate::inspect::Inspection;
 use crate::merging::{Account, Merge};
+use crate::place_search::Disc;
 use crate::planes::CityPlanes;
 use crate::verdict::{Alignment, Freedom, FreedomUnit, Verdict};
 
@@ -85,10 +86,13 @@ pub fn of_index(index: &IndexOverview, names: &[String], written: &Path, seconds
     table.text
 }
 
-/// Where the search would begin.
-pub fn of_start(start: Option<(&Estimate, f64)>, seconds: f64) -> String {
+/// Where the search would begin; without a start, within the disc, or anywhere in the city.
+pub fn of_start(start: Option<(&Estimate, f64)>, near: Option<Disc>, seconds: f64) -> String {
     let Some((estimate, distance_m)) = start else {
-        let mut table = Table::new("start: none, the city would be searched", 13);
+        let searched = near.map_or("the city".to_owned(), |Disc { center: [x, y], radius_m }| {
+            format!("what lies within {radius_m} m of {x:.2}, {y:.2}")
+        });
+        let mut table = Table::new(&format!("start: none, {searched} would be searched"), 13);
         table.row("time", format!("{seconds:.1} s"));
         return table.text;
     };

@@ -104,9 +104,10 @@ fn codes_of(text: &str) -> Vec<u32> {
     }
     for piece in pieces {
         let piece = piece.strip_prefix(".xml").unwrap_or(piece);
-        let end = piece.find(|c: char| !(c.is_ascii_digit() || "+:./#* ".contains(c))).unwrap_or(piece.len());
         // After a plus stands the vertical code; of version and code the code is last.
-        let codes_of_piece = piece[..end]
+        let beginning =
+            piece.split(|c: char| !(c.is_ascii_digit() || "+:./#* ".contains(c))).next().unwrap_or_default();
+        let codes_of_piece = beginning
             .split('+')
             .filter_map(|part| part.split(|c: char| !c.is_ascii_digit()).filter_map(code).next_back());
         codes.extend(codes_of_piece);
@@ -142,7 +143,7 @@ fn code_of_name(text: &str) -> Option<u32> {
     let number_after = |word: &str| -> Option<(u32, String)> {
         let rest = name.split_once(word)?.1;
         let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
-        Some((digits.parse().ok()?, rest[digits.len()..].to_owned()))
+        Some((digits.parse().ok()?, rest.trim_start_matches(|c: char| c.is_ascii_digit()).to_owned()))
     };
     if let Some((zone, rest)) = number_after("utmzone").or_else(|| number_after("utm")) {
         return match zone {
@@ -225,5 +226,22 @@ mod tests {
         assert!(Crs::understood("http://www.opengis.net/def/crs/EPSG/0/6697").is_geographic());
         assert!(Crs::understood("urn:ogc:def:crs:OGC::CRS84").is_longitude_first());
         assert!(!Crs::understood("EPSG:7415").is_geographic());
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_understood_or_kept(text in "(EPSG|epsg|utm|UTM zone |urn:ogc|CRS84|[0-9:+./ *é#\\[\\]\",]|\\PC){0,12}") {
+            let crs = Crs::understood(&text);
+            assert_eq!(crs.text, text.trim());
+            assert!(crs.epsg.is_none_or(|code| CODES.contains(&code)), "{crs:?}");
+        }
+
+        #[test]
+        fn codes_are_found_in_any_case_and_with_a_vertical_one(code in 1024..=32_767_u32, vertical in 5600..=5799_u32, is_upper: bool) {
+            let text = format!("EPSG:{code}+{vertical}");
+            let crs = Crs::understood(&if is_upper { text } else { text.to_lowercase() });
+            assert_eq!(crs.epsg, Some(code));
+            assert!(crs.vertical.is_some());
+        }
     }
 }

@@ -52,11 +52,12 @@ pub fn wkt_crs(text: &str) -> WktCrs {
 
 /// What stands between the brackets after the first `keyword` (which ends with a bracket and does not begin within a word).
 fn inside<'a>(text: &'a str, keyword: &str) -> Option<&'a str> {
-    let begins_a_word = |at: &usize| !text[..*at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+    let begins_a_word =
+        |at: &usize| !text.get(..*at).unwrap_or_default().ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
     let at = text.match_indices(keyword).map(|(at, _)| at).find(begins_a_word)?;
-    let rest = &text[at + keyword.len()..];
+    let rest = text.get(at + keyword.len()..)?;
     let end = children(rest).last().map_or(0, |(_, end)| *end);
-    Some(&rest[..end])
+    rest.get(..end)
 }
 
 /// The places of the parts at the top of a list, apart by commas, up to the bracket that closes it.
@@ -87,7 +88,7 @@ fn children(list: &str) -> Vec<(usize, usize)> {
 /// The parts at the top of a list that begin with one of the keywords, without it.
 fn parts<'a>(list: &'a str, keywords: &'static [&str]) -> impl DoubleEndedIterator<Item = &'a str> {
     children(list).into_iter().filter_map(move |(start, end)| {
-        let part = list[start..end].trim();
+        let part = list.get(start..end)?.trim();
         keywords.iter().find_map(|keyword| part.strip_prefix(keyword))
     })
 }

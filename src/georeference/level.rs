@@ -54,3 +54,36 @@ fn by_gravity(readings: &[Vector3<f64>]) -> Option<Levelled> {
     let scatter_sq = agreeing().map(|b| up.angle(b).powi(2)).sum::<f64>() / (2.0 * count as f64);
     Some(Levelled { up, sigma_rad: GRAVITY_RAD.hypot((scatter_sq / count as f64).sqrt()) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tilted(degrees: f64) -> Vector3<f64> {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Vector3::new(sin, 0.0, cos)
+    }
+
+    #[test]
+    fn gravity_is_the_mean_of_readings_that_agree() {
+        let level = by_gravity(&[tilted(-1.0), tilted(1.0), tilted(3.0)]).unwrap();
+        assert!(level.up.angle(&tilted(1.0)) < 1e-6, "{}", level.up);
+        // Never surer than the instrument, however well readings agree.
+        assert!(by_gravity(&[tilted(0.0); 9]).unwrap().sigma_rad >= GRAVITY_RAD);
+        assert!(level.sigma_rad > GRAVITY_RAD);
+    }
+
+    #[test]
+    fn a_shaken_camera_is_left_out() {
+        let level = by_gravity(&[tilted(90.0), tilted(0.0), tilted(0.0), tilted(180.0)]).unwrap();
+        assert!(level.up.angle(&tilted(0.0)) < 1e-6, "{}", level.up);
+    }
+
+    #[test]
+    fn readings_without_a_majority_tell_nothing() {
+        assert!(by_gravity(&[]).is_none());
+        assert!(by_gravity(&[tilted(0.0)]).is_none());
+        assert!(by_gravity(&[tilted(0.0), tilted(90.0)]).is_none());
+        assert!(by_gravity(&[tilted(0.0), tilted(0.0), tilted(60.0), tilted(90.0), tilted(120.0)]).is_none());
+    }
+}

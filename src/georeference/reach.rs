@@ -50,3 +50,58 @@ impl Estimate {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Rotation3, Similarity, Start, StartSigmas, Vector3};
+    use crate::random::Random;
+
+    fn estimate(points: &[Point3<f64>], sigmas: StartSigmas) -> Estimate {
+        let pose = Similarity {
+            scale: 2.5,
+            rotation: Rotation3::from_euler_angles(0.1, -0.2, 2.0),
+            translation: Vector3::new(1000.0, -500.0, 30.0),
+        };
+        Estimate::given(Start::new(pose, sigmas).unwrap(), points, "start".into())
+    }
+
+    fn sigmas() -> StartSigmas {
+        StartSigmas { position_m: 20.0, height_m: 3.0, heading_rad: 0.5, tilt_rad: 0.03, log_scale: 0.2 }
+    }
+
+    #[test]
+    fn surroundings_hold_the_cloud_wherever_three_sigmas_put_it() {
+        let mut random = Random::stream(4, 0);
+        let points: Vec<Point3<f64>> = (0..300).map(|_| Point3::from(20.0 * random.normal_vector())).collect();
+        let estimate = estimate(&points, sigmas());
+        let around = estimate.surroundings(&points, None);
+        let middle = estimate.start.city_from_sfm().apply(&estimate.middle);
+        let farthest = crate::georeference::extent::within_which(&points, &estimate.middle, SEEN);
+        for _ in 0..500 {
+            let mut within = |most: f64| most * (2.0 * random.unit() - 1.0);
+            // Within three sigmas to any side, the scale three sigmas up, turned anyhow.
+            let shift = [within(60.0), within(60.0)];
+            let grown = 2.5 * within(0.6).exp();
+            let turned = Rotation3::from_euler_angles(within(3.0), within(3.0), within(3.0));
+            for point in points.iter().filter(|point| (*point - estimate.middle).norm() <= farthest) {
+                let off = grown * (turned * (point - estimate.middle));
+                let place = [0, 1].map(|k| middle[k] + shift[k] + off[k]);
+                let is_in = (0..2).all(|k| (around.low[k]..=around.high[k]).contains(&place[k]));
+                assert!(is_in, "{place:?} is not in {around:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_given_scale_widens_them_and_none_narrows_them() {
+        let points: Vec<Point3<f64>> = (0..100).map(|k| Point3::new(f64::from(k), 0.0, 0.0)).collect();
+        let estimate = estimate(&points, sigmas());
+        let width = |scale: Option<f64>| {
+            let around = estimate.surroundings(&points, scale);
+            around.high[0] - around.low[0]
+        };
+        assert_eq!(width(Some(0.1)), width(None));
+        assert!(width(Some(25.0)) > 2.0 * width(None));
+    }
+}

@@ -126,3 +126,53 @@ fn in_tile(x: u32, y: u32) -> usize {
     const MASK: u32 = (1 << TILE_BITS) - 1;
     (((y & MASK) << TILE_BITS) | (x & MASK)) as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    fn walls(random: &mut Random, count: usize) -> Vec<CityWall> {
+        let mut draw = |width: f64| width * (random.unit() - 0.5);
+        let wall = |_| {
+            let from = [draw(900.0), draw(700.0)];
+            let to = [from[0] + draw(60.0), from[1] + draw(60.0)];
+            CityWall { from, to, normal: [1.0, 0.0], foot_m: 0.0, top_m: 10.0 }
+        };
+        (0..count).map(wall).collect()
+    }
+
+    #[test]
+    fn every_place_near_a_wall_has_a_block_and_blocks_have_numbers_of_their_own() {
+        let mut random = Random::stream(2, 0);
+        let walls = walls(&mut random, 40);
+        let blocks = Blocks::around(&walls, 6.0);
+        let mut corner_of = std::collections::HashMap::new();
+        let mut near = 0;
+        for _ in 0..20_000 {
+            let place = [1100.0 * (random.unit() - 0.5), 900.0 * (random.unit() - 0.5)];
+            let number = blocks.of(place);
+            assert!(number < blocks.count);
+            if walls.iter().any(|wall| wall.distance_m(place) <= 6.0) {
+                near += 1;
+                assert!(number > 0, "{place:?} is near a wall and in no block");
+            }
+            let corner = [0, 1].map(|k| ((place[k] - blocks.low[k]) / BLOCK_M).floor() as i64);
+            if number > 0 {
+                assert_eq!(*corner_of.entry(number).or_insert(corner), corner, "block {number} is in two places");
+            }
+        }
+        assert!(near > 200, "{near}");
+        assert_eq!(blocks.area_m2(), (blocks.count - 1) as f64 * BLOCK_M * BLOCK_M);
+    }
+
+    #[test]
+    fn there_is_no_block_without_walls_nor_beyond_them() {
+        let none = Blocks::around(&[], 6.0);
+        assert_eq!((none.of([0.0, 0.0]), none.of([-1e9, 1e9]), none.count), (0, 0, 1));
+        let blocks = Blocks::around(&walls(&mut Random::stream(2, 1), 3), 6.0);
+        for far in [[1e7, 0.0], [0.0, -1e7], [f64::MAX, f64::MAX], [f64::NEG_INFINITY, 0.0]] {
+            assert_eq!(blocks.of(far), 0, "{far:?}");
+        }
+    }
+}

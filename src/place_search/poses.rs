@@ -64,3 +64,57 @@ pub fn distinct(mut poses: Vec<ScoredPose>, keep: usize, apart_m: f64, radius: f
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    fn drawn(random: &mut Random) -> ScoredPose {
+        let mut draw = |width: f64| width * (random.unit() - 0.5);
+        let pose = PlanPose { center: [draw(40.0), draw(40.0)], heading_rad: draw(6.0), scale: 2.0 + draw(1.0) };
+        // Whole numbers, so that some are equal.
+        ScoredPose { pose, z: draw(20.0).round(), tag: 0 }
+    }
+
+    #[test]
+    fn keeps_what_holding_each_against_all_better_ones_keeps() {
+        let mut random = Random::stream(8, 0);
+        for (keep, apart_m) in [(1, 5.0), (20, 5.0), (1000, 12.0), (1000, 0.5)] {
+            let poses: Vec<ScoredPose> = (0..300).map(|_| drawn(&mut random)).collect();
+            let mut sorted = poses.clone();
+            sorted.sort_by(|a, b| b.z.total_cmp(&a.z));
+            let mut expected: Vec<ScoredPose> = Vec::new();
+            for pose in sorted {
+                if expected.iter().all(|kept| kept.pose.apart_m(&pose.pose, 3.0) >= apart_m) {
+                    expected.push(pose);
+                }
+            }
+            expected.truncate(keep);
+            let found = distinct(poses, keep, apart_m, 3.0);
+            let plain = |poses: &[ScoredPose]| poses.iter().map(|scored| scored.pose).collect::<Vec<_>>();
+            assert_eq!(plain(&found), plain(&expected), "{keep} kept at {apart_m} m");
+        }
+    }
+
+    #[test]
+    fn the_distance_of_poses_is_the_same_both_ways_and_bounds_how_far_any_point_moves() {
+        let mut random = Random::stream(9, 0);
+        for _ in 0..500 {
+            let (a, b) = (drawn(&mut random).pose, drawn(&mut random).pose);
+            let b = PlanPose { scale: a.scale, ..b };
+            assert!((a.apart_m(&b, 3.0) - b.apart_m(&a, 3.0)).abs() < 1e-12);
+            let rim = [3.0 * random.unit(), 0.0];
+            let ([x, y], [u, v]) = (a.apply(rim), b.apply(rim));
+            // A chord is shorter than its arc, and shift and turn add up to at most the root of two of their root of squares.
+            assert!((x - u).hypot(y - v) <= std::f64::consts::SQRT_2 * a.apart_m(&b, 3.0) + 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_whole_turn_sets_nothing_apart() {
+        let pose = PlanPose { center: [1.0, 2.0], heading_rad: 3.1, scale: 2.0 };
+        let turned = PlanPose { heading_rad: 3.1 - std::f64::consts::TAU, ..pose };
+        assert!(pose.apart_m(&turned, 100.0) < 1e-9);
+    }
+}

@@ -34,3 +34,44 @@ impl WallIndex {
         self.listed[range].iter().map(|&wall| &self.walls[wall as usize])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn knows_every_wall_that_is_near_a_place_and_few_that_are_far() {
+        let mut random = Random::stream(6, 0);
+        let mut draw = |width: f64| width * (random.unit() - 0.5);
+        let mut wall = || {
+            let from = [draw(800.0), draw(500.0)];
+            let to = [from[0] + draw(50.0), from[1] + draw(50.0)];
+            CityWall { from, to, normal: [1.0, 0.0], foot_m: 0.0, top_m: 8.0 }
+        };
+        let walls: Vec<CityWall> = (0..60).map(|_| wall()).collect();
+        for reach_m in [0.5, 3.0, 20.0] {
+            let index = WallIndex::new(walls.clone(), reach_m);
+            let mut near = 0;
+            for _ in 0..4000 {
+                let place = [draw(1000.0), draw(700.0)];
+                let ends = |wall: &CityWall| (wall.from, wall.to);
+                let found: Vec<_> = index.near(place).map(ends).collect();
+                for wall in walls.iter().filter(|wall| wall.distance_m(place) <= reach_m) {
+                    near += 1;
+                    assert!(found.contains(&ends(wall)), "{place:?} lies within {reach_m} m of {wall:?}");
+                }
+                // Across a block of 4 m on the way to its middle and on from it.
+                let farthest = index.near(place).map(|wall| wall.distance_m(place)).fold(0.0, f64::max);
+                assert!(farthest <= reach_m + 6.0, "{farthest} m off, asked for {reach_m} m");
+            }
+            assert!(near > 5, "{near} within {reach_m} m");
+        }
+    }
+
+    #[test]
+    fn a_city_without_walls_has_none_near_any_place() {
+        let index = WallIndex::new(Vec::new(), 3.0);
+        assert_eq!(index.near([0.0, 0.0]).count() + index.near([1e9, -1e9]).count(), 0);
+    }
+}

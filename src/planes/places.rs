@@ -83,3 +83,67 @@ pub(super) fn thinned(points: &[Point3<f64>], places: &[PointIndex], most: usize
         width *= (next_to_middle.len() as f64 / most as f64).sqrt().max(1.05);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::random::Random;
+
+    fn cloud(count: usize, levels: usize) -> Vec<Point3<f64>> {
+        let mut random = Random::stream(count as u64, 0);
+        (0..count).map(|_| Point3::from([0, 1, 2].map(|_| random.below(levels) as f64 - 1.0))).collect()
+    }
+
+    #[test]
+    fn each_place_is_the_first_point_that_stands_there() {
+        let mut points = cloud(400, 6);
+        points.extend([Point3::new(0.0, -0.0, 0.0), Point3::new(-0.0, 0.0, 0.0)]);
+        let places = Places::of(&points);
+        let first = |p: &Point3<f64>| points.iter().position(|other| other == p).unwrap() as u32;
+        let expected: BTreeSet<u32> = points.iter().map(first).collect();
+        assert_eq!(places.firsts.iter().map(|p| p.0).collect::<BTreeSet<_>>(), expected);
+        assert_eq!(places.firsts.len(), expected.len());
+        // A point's slot is that of its place, wherever the place stands in the support.
+        let support: Vec<PointIndex> = places.firsts.iter().rev().step_by(2).copied().collect();
+        for (p, slot) in points.iter().zip(places.slots(&support)) {
+            let place = PointIndex(first(p));
+            assert_eq!(slot, support.iter().position(|s| *s == place).map(|at| at as u32), "{p}");
+        }
+    }
+
+    #[test]
+    fn a_thinning_keeps_few_enough_points_of_the_cloud_and_reaches_all_of_it() {
+        let points = cloud(20_000, 60);
+        let places = Places::of(&points).firsts;
+        for most in [50, 1000, 5000] {
+            let kept = thinned(&points, &places, most);
+            assert!(kept.len() <= most && kept.len() * 4 >= most, "{} of {most}", kept.len());
+            let distinct: BTreeSet<u32> = kept.iter().map(|p| p.0).collect();
+            assert_eq!(distinct.len(), kept.len());
+            // Even: every eighth of the box has its share.
+            for octant in 0..8 {
+                let is_in =
+                    |p: &&PointIndex| (0..3).all(|k| (points[p.0 as usize][k] > 28.5) == (octant >> k & 1 == 1));
+                let share = kept.iter().filter(is_in).count() as f64 / kept.len() as f64;
+                let fair = if most < 100 { 0.02..0.3 } else { 0.06..0.22 };
+                assert!(fair.contains(&share), "{share} of {most} in octant {octant}");
+            }
+        }
+        assert_eq!(thinned(&points, &places, places.len()), places);
+    }
+
+    #[test]
+    fn a_cloud_in_a_plane_on_a_line_or_with_a_point_far_off_is_thinned_all_the_same() {
+        let flat: Vec<_> = cloud(5000, 80).iter().map(|p| Point3::new(p.x, p.y, 0.0)).collect();
+        let straight: Vec<_> = (0..5000).map(|k| Point3::new(f64::from(k), 0.0, 0.0)).collect();
+        let mut stray = cloud(5000, 80);
+        stray.push(Point3::new(1e12, 0.0, 0.0));
+        for points in [flat, straight, stray] {
+            let places = Places::of(&points).firsts;
+            let kept = thinned(&points, &places, 300);
+            assert!((30..=300).contains(&kept.len()), "{}", kept.len());
+        }
+    }
+}

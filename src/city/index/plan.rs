@@ -90,3 +90,52 @@ impl Extent {
         cell_of([0, 1].map(|k| (self.low[k] + self.high[k]) / 2.0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::synthetic::Block;
+
+    #[test]
+    fn every_facet_object_and_stray_vertex_has_its_block() {
+        let mut model = Block::town(12, 9, 4).with_ground().city().unwrap();
+        model.vertices.push(Point3::new(1e5, 0.0, 0.0));
+        model.objects.push("empty".into());
+        let plans = block_plans(&model);
+        assert!(plans.len() > 4, "{} blocks", plans.len());
+        let facets: Vec<u32> = plans.iter().flat_map(|plan| plan.facets.clone()).collect();
+        assert_eq!(facets.len(), model.facets.len(), "no facet stands in two blocks");
+        assert_eq!(BTreeSet::from_iter(facets), (0..model.facets.len() as u32).collect());
+        let objects: BTreeSet<u32> = plans.iter().flat_map(|plan| plan.objects.clone()).collect();
+        assert_eq!(objects, (0..model.objects.len() as u32).collect());
+        let strays: Vec<u32> = plans.iter().flat_map(|plan| plan.strays.clone()).collect();
+        assert_eq!(strays, [model.vertices.len() as u32 - 1]);
+        assert!(plans.iter().all(|plan| plan.facets.is_sorted() && plan.objects.is_sorted()));
+    }
+
+    #[test]
+    fn an_object_that_is_no_wider_than_a_block_is_in_one() {
+        let model = Block::town(12, 9, 4).city().unwrap();
+        let plans = block_plans(&model);
+        for object in 0..model.objects.len() as u32 {
+            let of_object = model.facets.iter().filter(|facet| facet.object.0 == object);
+            let extent = of_object.map(|facet| Extent::of(&model, facet)).reduce(|a, b| a.with(&b)).unwrap();
+            let blocks = plans.iter().filter(|plan| plan.objects.contains(&object)).count();
+            assert!(extent.is_wide() || blocks == 1, "object {object} is in {blocks} blocks");
+        }
+    }
+
+    #[test]
+    fn cells_are_half_open_on_both_sides_of_zero() {
+        for (place, cell) in [(0.0, 0), (249.999, 0), (250.0, 1), (-0.001, -1), (-250.0, -1), (-250.001, -2)] {
+            assert_eq!(cell_of([place, 0.0]), [cell, 0], "{place}");
+        }
+    }
+
+    #[test]
+    fn a_model_without_facets_has_no_block() {
+        assert!(block_plans(&CityModel::default()).is_empty());
+    }
+}

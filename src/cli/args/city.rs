@@ -7,6 +7,7 @@ use clap::ValueEnum;
 
 use super::values::numbers;
 use crate::city::{CityLod, CityOptions, CityUnit, CityUp, Lod};
+use crate::format::crs::Crs;
 use crate::format::footprints::FootprintFields;
 
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -20,7 +21,7 @@ pub struct CityArgs {
     pub city_up: Option<CityUpArg>,
     /// Level of detail: the highest of each object up to this (1, 1.3, 2.2) [default: the highest of each object]. Level 0,
     /// footprints, is never taken
-    #[arg(long, value_name = "LEVEL")]
+    #[arg(long, value_name = "LEVEL", allow_hyphen_values = true)]
     pub lod: Option<LodArg>,
     /// What the city's coordinates are in [default: m, with a warning where the heights of houses deny it]
     #[arg(long, value_name = "UNIT", value_enum)]
@@ -29,12 +30,12 @@ pub struct CityArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub city_origin: Option<OriginArg>,
     /// Reference system of the city, where its files do not say theirs: EPSG:H or EPSG:H+V
-    #[arg(long, value_name = "CRS")]
+    #[arg(long, value_name = "CRS", value_parser = reference_system)]
     pub crs: Option<String>,
-    /// Attribute of footprints (Shapefile, GeoPackage) with the heights of houses above their base, in metres
+    /// Attribute of footprints (Shapefile, GeoPackage) with the heights of houses above their base, in the unit of the coordinates
     #[arg(long, value_name = "NAME")]
     pub height_field: Option<String>,
-    /// Attribute of footprints with the heights of their bases, in metres [default: all at 0]
+    /// Attribute of footprints with the heights of their bases, in the unit of the coordinates [default: all at 0]
     #[arg(long, value_name = "NAME")]
     pub base_field: Option<String>,
 }
@@ -93,6 +94,12 @@ pub enum CityUnitArg {
     Ft,
     /// Feet of the US survey, 1200/3937 m
     UsFt,
+}
+
+/// `--crs`, as it was typed: a code, or another spelling of a system that has one.
+fn reference_system(text: &str) -> Result<String, &'static str> {
+    let expected = "expected EPSG:<code> of a registered system, such as EPSG:25832 or EPSG:25832+7837";
+    Crs::understood(text).epsg.map(|_| text.to_owned()).ok_or(expected)
 }
 
 /// `--lod`: 2 takes all of 2.x, 2.1 what is not above it.

@@ -42,12 +42,12 @@ impl<'a> Nest<'a> {
             b'"' | b'{' => {
                 // Neither belongs here; the rest is not looked at.
                 self.at = bytes.len();
-                Token::Leaf(shortened(&self.text[start..]))
+                Token::Leaf(shortened(self.text.get(start..).unwrap_or_default()))
             }
             _ => {
                 let ends = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | b',' | b']');
                 self.at = bytes[start..].iter().position(ends).map_or(bytes.len(), |length| start + length);
-                Token::Leaf(&self.text[start..self.at])
+                Token::Leaf(self.text.get(start..self.at).unwrap_or_default())
             }
         };
         Some((start, token))
@@ -57,7 +57,7 @@ impl<'a> Nest<'a> {
 /// The beginning of a text, for a message.
 fn shortened(text: &str) -> &str {
     const SHOWN: usize = 20;
-    text.char_indices().nth(SHOWN).map_or(text, |(end, _)| &text[..end])
+    text.char_indices().nth(SHOWN).and_then(|(end, _)| text.get(..end)).unwrap_or(text)
 }
 
 /// A whole number from 0 on that fits in 32 bits.

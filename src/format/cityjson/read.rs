@@ -66,7 +66,7 @@ fn next_document<'a>(text: &'a str, rest: &mut &'a str) -> Result<Document<'a>, 
     let here = std::mem::take(rest);
     match found {
         Some(Ok(document)) => {
-            *rest = &here[read..];
+            *rest = here.get(read..).unwrap_or_default();
             Ok(document)
         }
         Some(Err(error)) => Err(Fault::json(place_of(text, here), here, &error)),

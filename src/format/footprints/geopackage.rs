@@ -13,6 +13,9 @@ use crate::format::file::open_regular;
 use crate::format::surface_error::{Place, SurfaceError};
 use crate::format::surfaces::SurfaceFile;
 
+/// What the file is, in [`SurfaceFile::format`].
+pub(super) const FORMAT: &str = "GeoPackage";
+
 /// The longest value that is read, bytes. Chosen: an outline of a million corners.
 const LONGEST_VALUE_BYTES: i32 = 64 << 20;
 
@@ -56,7 +59,7 @@ pub fn read_geopackage(path: &Path, fields: &FootprintFields) -> Result<SurfaceF
         return fields.among(&numeric).and(Err(SurfaceError::whole("the fields of heights stand in different layers")));
     };
     let mut file = prisms.builder.file;
-    file.format = "GeoPackage".to_owned();
+    file.format = FORMAT.to_owned();
     file.crs = crs;
     Ok(file)
 }

@@ -18,3 +18,10 @@ mod wkb;
 pub use fields::FootprintFields;
 pub use geopackage::{is_geopackage, read_geopackage};
 pub use shapefile::{is_shapefile, read_shapefile};
+
+use crate::format::surfaces::SurfaceFile;
+
+/// Whether a file holds footprints, of which this room makes houses.
+pub fn is_of_footprints(file: &SurfaceFile) -> bool {
+    [shapefile::FORMAT, geopackage::FORMAT].contains(&file.format.as_str())
+}

@@ -10,6 +10,9 @@ use crate::format::file::{LARGEST_MODEL_BYTES, read_regular};
 use crate::format::surface_error::{Place, SurfaceError};
 use crate::format::surfaces::SurfaceFile;
 
+/// What the file is, in [`SurfaceFile::format`].
+pub(super) const FORMAT: &str = "Shapefile";
+
 /// The longest .prj that is read, bytes; they have some five hundred.
 const LARGEST_PRJ_BYTES: u64 = 1 << 16;
 
@@ -54,7 +57,7 @@ pub fn read_shapefile(path: &Path, fields: &FootprintFields) -> Result<SurfaceFi
         })?;
     }
     let mut file = prisms.builder.file;
-    file.format = "Shapefile".to_owned();
+    file.format = FORMAT.to_owned();
     file.crs = reference_system(path)?;
     Ok(file)
 }

@@ -14,7 +14,7 @@
 //! Thresholds  condition below `NOT_ISOLATED` = 1e-10 is refused: it is what rounding of 1e-16 leaves of a double solution
 //!             after polishing, with room; random scenes come below 1e-5 once in a thousand
 //! Source      mathematics.md section 10
-//! Tests       golden/degenerate.json; tests/solver_problems.rs
+//! Tests       golden/degenerate.json; tests/solver_problems/
 //! ```
 
 use super::jacobian::singular_of;

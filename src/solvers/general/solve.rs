@@ -22,7 +22,7 @@
 //! Source      mathematics.md sections 2, 10, 11, 12
 //! Cost        about a millisecond, and a few microseconds for each further row: it is made for single problems, not for loops;
 //!             it allocates
-//! Tests       tests/solver_problems.rs, over the golden problems (docs/golden.md)
+//! Tests       tests/solver_problems/, over the golden problems (docs/golden.md)
 //! ```
 
 use super::candidates::candidates;

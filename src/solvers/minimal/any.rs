@@ -18,7 +18,7 @@
 //! Source      Kukelova, Heller and Fitzgibbon 2016; mathematics.md sections 3, 6, 7
 //! Cost        1.87 us rigid, 2.39 us similarity (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000
 //!             1.2e-15 of the scene
-//! Tests       tests/solver_accuracy.rs; tests/solver_problems.rs; golden/*.json
+//! Tests       tests/solver_accuracy.rs; tests/solver_problems/; golden/*.json
 //! ```
 
 use crate::geometry::Vector3;

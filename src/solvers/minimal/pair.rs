@@ -22,7 +22,7 @@
 //! Scaling     differences to p_1; all tests are relative
 //! Source      mathematics.md section 5; derived here
 //! Cost        1.20 to 1.68 us (benches/solvers, shared 2-core EPYC, 2026-11-25); worst residual of 100,000 1.5e-15 of the scene
-//! Tests       tests/solver_accuracy.rs; tests/solver_problems.rs; golden/rigid.json, similarity.json, hard.json
+//! Tests       tests/solver_accuracy.rs; tests/solver_problems/; golden/rigid.json, similarity.json, hard.json
 //! ```
 
 use crate::geometry::{Axes, Matrix3, Vector3};

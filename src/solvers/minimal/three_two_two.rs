@@ -15,7 +15,7 @@
 //! Source      Ramalingam et al. 2010, section 3.1, in axes of our own; mathematics.md 4.4
 //! Cost        0.62 us (benches/solvers, shared 2-core EPYC, 2026-11-25); residual 1e-15 of the scene as a rule, 1.3e-12 the
 //!             worst of 100,000
-//! Tests       tests/solver_accuracy.rs; tests/solver_problems.rs; golden/rigid.json
+//! Tests       tests/solver_accuracy.rs; tests/solver_problems/; golden/rigid.json
 //! ```
 
 use crate::solvers::elimination::{Eliminated, Scale};

@@ -1,4 +1,4 @@
-"""Writes the tiny models and clouds of tests/damaged_reconstruction.rs: sound ones of each kind, and one per defect.
+"""Writes the tiny models and clouds of tests/damaged_reconstruction/: sound ones of each kind, and one per defect.
 
 A defect's folder holds only the files that are not those of `sound` (or of `sound_framed`, where rigs or frames are)."""
 

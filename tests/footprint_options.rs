@@ -96,7 +96,7 @@ fn heights_are_in_the_unit_of_the_coordinates() {
 fn a_field_that_is_not_there_or_holds_no_numbers_is_refused_with_those_that_do() {
     let room = houses();
     let planes = ["planes", "houses.shp"];
-    refused(&room, &planes, &["--height-field", "HEIGHT, base, storeys", "houses.shp"]);
+    refused(&room, &planes, &["--height-field", "HEIGHT, base, storeys", "houses.dbf"]);
     for (option, wrong) in [("--height-field", "eaves"), ("--height-field", "name"), ("--height-field", "")] {
         refused(&room, &[&planes[..], &[option, wrong]].concat(), &["HEIGHT, base, storeys", &format!("`{wrong}`")]);
     }

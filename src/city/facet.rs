@@ -1,6 +1,6 @@
 //! One polygon of a file to planar facets.
 
-use super::triangulate::triangulate;
+use super::triangulate::{convex_fan, triangulate};
 use super::warning::CityDefect;
 use super::{Facet, ObjectId, SurfaceKind};
 use crate::geometry::{Axes, Plane, Point3, Vector3};
@@ -48,6 +48,8 @@ pub(super) struct Face {
 struct Place {
     plane: Plane,
     centroid: Point3<f64>,
+    /// Whether all corners lie in the plane, as far as anybody can tell.
+    is_flat: bool,
 }
 
 impl<'a> Shaper<'a> {
@@ -79,11 +81,12 @@ impl<'a> Shaper<'a> {
         let hole_area = self.wind_holes(&mut face.holes, &plane.normal);
         self.corners.extend(face.holes.iter().flatten().map(|&vertex| self.vertices[vertex as usize]));
         let first = self.triangles.len();
-        let Some(is_clean) = self.cut(&face, &Place { plane, centroid }) else {
+        let off_m = self.corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
+        let is_flat = off_m <= flat_tolerance(extent, self.precision_m);
+        let Some(is_clean) = self.cut(&face, &Place { plane, centroid, is_flat }) else {
             return self.defects.push((face.number, CityDefect::Tangled));
         };
-        let off_m = self.corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
-        if off_m > flat_tolerance(extent, self.precision_m) {
+        if !is_flat {
             self.defects.push((face.number, CityDefect::NonPlanar { worst_m: off_m }));
             return self.add_split(first, &face);
         }
@@ -128,6 +131,14 @@ impl<'a> Shaper<'a> {
         self.flat.clear();
         let in_plane = |corner: &Point3<f64>| [right.dot(&(corner - centroid)), up.dot(&(corner - centroid))];
         self.flat.extend(self.corners.iter().map(in_plane));
+        // The triangles of what is not flat become facets, for which Delaunay's are better than a fan.
+        if place.is_flat
+            && face.holes.is_empty()
+            && let Some(fan) = convex_fan(&self.flat, self.precision_m)
+        {
+            self.triangles.extend(fan.map(|triangle| triangle.map(|at| outline[at])));
+            return Some(true);
+        }
         let rings: Vec<u32> = outline.iter().chain(face.holes.iter().flatten()).copied().collect();
         let made = triangulate(&self.flat, &face.ring_ends())?;
         let first_new = self.vertices.len() + self.new_vertices.len();

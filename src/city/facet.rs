@@ -288,4 +288,31 @@ mod tests {
         assert!(facets.len() == 1 && triangles.iter().flatten().all(|&at| at <= 6), "{triangles:?}");
         assert!([5, 6].iter().all(|new| triangles.iter().flatten().any(|at| at == new)), "{triangles:?}");
     }
+
+    #[test]
+    fn a_fan_gives_the_plane_and_the_area_of_the_mesh() {
+        for corners in 5..=12_u32 {
+            // On an ellipse that leans, at large coordinates, to the digits of a file.
+            let place = |at: u32| {
+                let (sin, cos) = (f64::from(at) * std::f64::consts::TAU / f64::from(corners)).sin_cos();
+                [85_000.0 + 9.0 * cos, 446_000.0 + 4.0 * sin, 3.0 * cos + 2.0 * sin].map(|v| (v * 1e3).round() / 1e3)
+            };
+            let outline: Vec<u32> = (0..corners).collect();
+            let vertices: Vec<[f64; 3]> = outline.iter().map(|&at| place(at)).collect();
+            let (facets, defects, triangles) = shaped(&vertices, &outline, &[]);
+            assert!(facets.len() == 1 && defects.is_empty() && triangles.len() as u32 == corners - 2);
+            let points: Vec<Point3<f64>> = vertices.iter().copied().map(Point3::from).collect();
+            let Axes { x, y, .. } = Axes::along_coordinates(&facets[0].plane.normal);
+            let flat: Vec<[f64; 2]> = points.iter().map(|p| p - points[0]).map(|v| [x.dot(&v), y.dot(&v)]).collect();
+            assert!(convex_fan(&flat, 1e-3).is_some());
+            let sum = |triangles: &[[usize; 3]]| -> Vector3<f64> {
+                triangles.iter().map(|&[a, b, c]| (points[b] - points[a]).cross(&(points[c] - points[a])) / 2.0).sum()
+            };
+            let by_fan = sum(&triangles.iter().map(|t| t.map(|at| at as usize)).collect::<Vec<_>>());
+            let by_mesh = sum(&triangulate(&flat, &[flat.len()]).unwrap().triangles);
+            assert!((by_fan - by_mesh).norm() < 1e-9, "{by_fan} {by_mesh}");
+            assert!((by_mesh.norm() - facets[0].area).abs() < 1e-9);
+            assert!((by_mesh.normalize() - facets[0].plane.normal).norm() < 1e-9);
+        }
+    }
 }

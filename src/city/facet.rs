@@ -1,6 +1,6 @@
 //! One polygon of a file to planar facets.
 
-use super::triangulate::triangulate;
+use super::triangulate::{convex_fan, triangulate};
 use super::warning::CityDefect;
 use super::{Facet, ObjectId, SurfaceKind};
 use crate::geometry::{Axes, Plane, Point3, Vector3};
@@ -48,6 +48,8 @@ pub(super) struct Face {
 struct Place {
     plane: Plane,
     centroid: Point3<f64>,
+    /// Whether all corners lie in the plane, as far as anybody can tell.
+    is_flat: bool,
 }
 
 impl<'a> Shaper<'a> {
@@ -79,11 +81,12 @@ impl<'a> Shaper<'a> {
         let hole_area = self.wind_holes(&mut face.holes, &plane.normal);
         self.corners.extend(face.holes.iter().flatten().map(|&vertex| self.vertices[vertex as usize]));
         let first = self.triangles.len();
-        let Some(is_clean) = self.cut(&face, &Place { plane, centroid }) else {
+        let off_m = self.corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
+        let is_flat = off_m <= flat_tolerance(extent, self.precision_m);
+        let Some(is_clean) = self.cut(&face, &Place { plane, centroid, is_flat }) else {
             return self.defects.push((face.number, CityDefect::Tangled));
         };
-        let off_m = self.corners.iter().map(|corner| plane.signed_distance(corner).abs()).fold(0.0, f64::max);
-        if off_m > flat_tolerance(extent, self.precision_m) {
+        if !is_flat {
             self.defects.push((face.number, CityDefect::NonPlanar { worst_m: off_m }));
             return self.add_split(first, &face);
         }
@@ -128,6 +131,14 @@ impl<'a> Shaper<'a> {
         self.flat.clear();
         let in_plane = |corner: &Point3<f64>| [right.dot(&(corner - centroid)), up.dot(&(corner - centroid))];
         self.flat.extend(self.corners.iter().map(in_plane));
+        // The triangles of what is not flat become facets, for which Delaunay's are better than a fan.
+        if place.is_flat
+            && face.holes.is_empty()
+            && let Some(fan) = convex_fan(&self.flat, self.precision_m)
+        {
+            self.triangles.extend(fan.map(|triangle| triangle.map(|at| outline[at])));
+            return Some(true);
+        }
         let rings: Vec<u32> = outline.iter().chain(face.holes.iter().flatten()).copied().collect();
         let made = triangulate(&self.flat, &face.ring_ends())?;
         let first_new = self.vertices.len() + self.new_vertices.len();
@@ -276,5 +287,32 @@ mod tests {
         assert_eq!(defects, [(0, CityDefect::SelfIntersecting)]);
         assert!(facets.len() == 1 && triangles.iter().flatten().all(|&at| at <= 6), "{triangles:?}");
         assert!([5, 6].iter().all(|new| triangles.iter().flatten().any(|at| at == new)), "{triangles:?}");
+    }
+
+    #[test]
+    fn a_fan_gives_the_plane_and_the_area_of_the_mesh() {
+        for corners in 5..=12_u32 {
+            // On an ellipse that leans, at large coordinates, to the digits of a file.
+            let place = |at: u32| {
+                let (sin, cos) = (f64::from(at) * std::f64::consts::TAU / f64::from(corners)).sin_cos();
+                [85_000.0 + 9.0 * cos, 446_000.0 + 4.0 * sin, 3.0 * cos + 2.0 * sin].map(|v| (v * 1e3).round() / 1e3)
+            };
+            let outline: Vec<u32> = (0..corners).collect();
+            let vertices: Vec<[f64; 3]> = outline.iter().map(|&at| place(at)).collect();
+            let (facets, defects, triangles) = shaped(&vertices, &outline, &[]);
+            assert!(facets.len() == 1 && defects.is_empty() && triangles.len() as u32 == corners - 2);
+            let points: Vec<Point3<f64>> = vertices.iter().copied().map(Point3::from).collect();
+            let Axes { x, y, .. } = Axes::along_coordinates(&facets[0].plane.normal);
+            let flat: Vec<[f64; 2]> = points.iter().map(|p| p - points[0]).map(|v| [x.dot(&v), y.dot(&v)]).collect();
+            assert!(convex_fan(&flat, 1e-3).is_some());
+            let sum = |triangles: &[[usize; 3]]| -> Vector3<f64> {
+                triangles.iter().map(|&[a, b, c]| (points[b] - points[a]).cross(&(points[c] - points[a])) / 2.0).sum()
+            };
+            let by_fan = sum(&triangles.iter().map(|t| t.map(|at| at as usize)).collect::<Vec<_>>());
+            let by_mesh = sum(&triangulate(&flat, &[flat.len()]).unwrap().triangles);
+            assert!((by_fan - by_mesh).norm() < 1e-9, "{by_fan} {by_mesh}");
+            assert!((by_mesh.norm() - facets[0].area).abs() < 1e-9);
+            assert!((by_mesh.normalize() - facets[0].plane.normal).norm() < 1e-9);
+        }
     }
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::CityModel;
+use super::sorting::{digest, each_alike};
 use super::source::Source;
 use super::warning::{CityDefect, Warnings};
 use crate::geometry::Point3;
@@ -62,20 +63,23 @@ fn used_vertices(sources: &[Source]) -> Vec<Used> {
     used
 }
 
-/// For each position the index of the first that equals it; sorting finds them, in any number of threads the same.
+/// For each position the index of the first that equals it.
 fn first_at_place(positions: &[Point3<f64>]) -> Vec<u32> {
     // Adding zero turns a negative zero into the usual one, which has other bits.
-    let key = |position: &Point3<f64>| [position.x, position.y, position.z].map(|value| (value + 0.0).to_bits());
-    let mut order: Vec<([u64; 3], u32)> = positions.iter().map(key).zip(0..).collect();
-    order.par_sort_unstable();
-    let mut first = vec![0; positions.len()];
-    let mut leader = order.first().copied().unwrap_or_default();
-    for &(key, at) in &order {
-        if key != leader.0 {
-            leader = (key, at);
-        }
-        first[at as usize] = leader.1;
-    }
+    let key = |at: u32| {
+        let position = &positions[at as usize];
+        [position.x, position.y, position.z].map(|value| (value + 0.0).to_bits())
+    };
+    let count = positions.len() as u32;
+    let mut first: Vec<u32> = (0..count).collect();
+    each_alike(
+        count,
+        |at| digest(key(at)),
+        key,
+        |same| {
+            same[1..].iter().for_each(|&at| first[at as usize] = same[0]);
+        },
+    );
     first
 }
 

@@ -7,6 +7,7 @@ mod axes;
 mod build;
 mod contents;
 mod degrees;
+mod edges;
 mod error;
 mod distance;
 mod facet;
@@ -25,6 +26,7 @@ mod plan_box;
 mod polygons;
 mod read;
 mod recognise;
+mod sorting;
 mod source;
 mod subset;
 #[cfg(test)]

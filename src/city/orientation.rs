@@ -24,7 +24,8 @@ mod sky;
 use rayon::prelude::*;
 
 use self::shells::{Judged, Object, area};
-use super::validate::{OBJECTS_PER_CHUNK, facets_by_object};
+use super::edges::{by_object, objects_of};
+use super::validate::OBJECTS_PER_CHUNK;
 use super::warning::{CityDefect, CityPlace, Warnings};
 use super::{CityModel, CityRole, CitySource, Facet};
 use crate::geometry::Plane;
@@ -52,7 +53,8 @@ pub(super) fn turn_outward(
         }
         return ToldArea::default();
     }
-    let objects = facets_by_object(model, source.objects.clone(), source.facets.clone());
+    let by_object = by_object(model, source.facets.clone());
+    let objects = objects_of(model, &by_object);
     let mut turned = inward(model, &objects, source);
     let area_told = turned.area;
     if sense.turns_all(&turned.area) {
@@ -60,7 +62,7 @@ pub(super) fn turn_outward(
         source.facets.clone().for_each(|facet| turn(model, facet));
         let still = inward(model, &objects, source);
         still.facets.iter().flatten().for_each(|&facet| turn(model, facet));
-        let others = |(all, still): (&Vec<u32>, &Vec<u32>)| {
+        let others = |(all, still): (&&[u32], &Vec<u32>)| {
             all.iter().copied().filter(|facet| still.binary_search(facet).is_err()).collect()
         };
         turned.facets = objects.iter().zip(&still.facets).map(others).collect();
@@ -68,7 +70,7 @@ pub(super) fn turn_outward(
         turned.facets.iter().flatten().for_each(|&facet| turn(model, facet));
     }
     let met = objects.iter().zip(&turned.facets).filter(|(_, turned)| !turned.is_empty());
-    let is_whole = |(all, turned): &(&Vec<u32>, &Vec<u32>)| area(model, turned) > area(model, all) / 2.0;
+    let is_whole = |(all, turned): &(&&[u32], &Vec<u32>)| area(model, turned) > area(model, all) / 2.0;
     let (whole, part): (Vec<_>, Vec<_>) = met.partition(is_whole);
     let (of, facets) = (objects.len() as u64, part.iter().map(|(_, turned)| turned.len() as u64).sum());
     warnings.add(CityDefect::InsideOut { of }, whole.len() as u64, || place_of(whole[0].1[0]));
@@ -120,8 +122,8 @@ struct Inward {
     area: ToldArea,
 }
 
-fn inward(model: &CityModel, objects: &[Vec<u32>], source: &CitySource) -> Inward {
-    let judge = |facets: &Vec<u32>| Object::new(model, facets, source).judged();
+fn inward(model: &CityModel, objects: &[&[u32]], source: &CitySource) -> Inward {
+    let judge = |facets: &&[u32]| Object::new(model, facets, source).judged();
     let chunks = objects.par_chunks(OBJECTS_PER_CHUNK);
     let judged: Vec<Vec<Judged>> = chunks.map(|chunk| chunk.iter().map(judge).collect()).collect();
     let (mut told_m2, mut turned_m2) = (0.0, 0.0);

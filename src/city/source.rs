@@ -77,6 +77,12 @@ impl Source {
         starts.zip(ends).map(|(start, end)| &self.corners[start as usize..end as usize])
     }
 
+    /// All corners of a face, of its outline and its holes.
+    pub fn corners_of(&self, face: usize) -> &[u32] {
+        let start = if face == 0 { 0 } else { self.face_ends[face - 1] };
+        &self.corners[start as usize..self.face_ends[face] as usize]
+    }
+
     /// The face that holds the corner at this index.
     pub fn face_of_corner(&self, at: usize) -> usize {
         self.face_ends.partition_point(|&end| end as usize <= at)

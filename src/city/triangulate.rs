@@ -1,11 +1,15 @@
 //! An outline and its holes in their plane to triangles, even-odd, without new points unless rings cross.
 
+mod fan;
+
 use std::cmp::Reverse;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
+
+pub(super) use self::fan::convex_fan;
 
 /// Pairs of edges for each corner that are looked at for crossings. Chosen: a millisecond for a hundred corners; an outline meets
 /// a few dozen edges beside each, all of them only where it is no outline, or has fewer corners than this.

@@ -69,7 +69,7 @@ fn houses_of(source: &Source) -> Vec<(f64, f64)> {
     let mut spans = vec![(f64::INFINITY, f64::NEG_INFINITY); source.objects.len()];
     for face in 0..source.face_count() {
         let (low, high) = &mut spans[source.face_objects[face] as usize];
-        for z in source.rings_of(face).flatten().map(|&at| source.positions[at as usize].z) {
+        for z in source.corners_of(face).iter().map(|&at| source.positions[at as usize].z) {
             (*low, *high) = (low.min(z), high.max(z));
         }
     }

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::edges::{by_object, objects_of, sorted_edges};
+use super::sorting::{digest, each_alike};
 use super::warning::{CityDefect, CityPlace, Warnings};
 use super::{CityModel, CityRole, CitySource, Facet};
 use crate::geometry::{Point3, Vector3};
@@ -15,9 +17,6 @@ const LARGEST_CITY_M: f64 = 200_000.0;
 
 /// Metres; a further mesh may begin this far from the city, or as far as the city is large.
 const NEAR_M: f64 = 1000.0;
-
-/// An edge of one facet, from the lower vertex to the higher or back, and the facet's number within its object.
-pub(super) type Edge = (u32, u32, bool, u32);
 
 /// What the edges of one object tell.
 #[derive(Clone, Copy, Default)]
@@ -38,8 +37,9 @@ pub(super) fn validate(
     warnings: &mut Warnings,
     place_of: impl Fn(u32) -> CityPlace,
 ) {
-    let by_object = facets_by_object(model, source.objects.clone(), source.facets.clone());
-    let judged = by_object.par_chunks(OBJECTS_PER_CHUNK);
+    let by_object = by_object(model, source.facets.clone());
+    let objects = objects_of(model, &by_object);
+    let judged = objects.par_chunks(OBJECTS_PER_CHUNK);
     let shells: Vec<Vec<Shell>> =
         judged.map(|chunk| chunk.iter().map(|facets| judge(model, facets)).collect()).collect();
     for shell in shells.iter().flatten() {
@@ -59,44 +59,20 @@ pub(super) fn validate(
     }
 }
 
-/// The facets of each object in order; objects without any are left out.
-pub(super) fn facets_by_object(
-    model: &CityModel,
-    objects: std::ops::Range<u32>,
-    facets: std::ops::Range<u32>,
-) -> Vec<Vec<u32>> {
-    let mut by_object = vec![Vec::new(); objects.len()];
-    for facet in facets {
-        by_object[(model.facets[facet as usize].object.0 - objects.start) as usize].push(facet);
-    }
-    by_object.retain(|facets| !facets.is_empty());
-    by_object
-}
-
-/// All edges of an object, like ones beside each other.
-pub(super) fn sorted_edges(model: &CityModel, facets: &[u32]) -> Vec<Edge> {
-    let mut edges: Vec<Edge> = Vec::with_capacity(4 * facets.len());
-    for (&facet, at) in facets.iter().zip(0..) {
-        edges.extend(edges_of(&model.facets[facet as usize]).map(|(low, high, rises)| (low, high, rises, at)));
-    }
-    edges.par_sort_unstable();
-    edges
-}
-
 fn judge(model: &CityModel, facets: &[u32]) -> Shell {
     let edges = sorted_edges(model, facets);
     let mut shell = Shell { first_open: u32::MAX, first_mixed: u32::MAX, ..Shell::default() };
-    for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+    for edge in edges.chunk_by(|a, b| a.ends() == b.ends()) {
         shell.edges += 1;
         match edge {
             [only] => {
                 shell.open += 1;
-                shell.first_open = shell.first_open.min(facets[only.3 as usize]);
+                shell.first_open = shell.first_open.min(facets[only.facet()]);
             }
             // More than two facets at one edge are no shell, and tell nothing about sides.
-            [one, other] if one.2 == other.2 => {
+            [one, other] if one.rises() == other.rises() => {
                 shell.mixed += 1;
-                shell.first_mixed = shell.first_mixed.min(facets[one.3.min(other.3) as usize]);
+                shell.first_mixed = shell.first_mixed.min(facets[one.facet().min(other.facet())]);
             }
             _ => {}
         }
@@ -104,30 +80,26 @@ fn judge(model: &CityModel, facets: &[u32]) -> Shell {
     shell
 }
 
-fn edges_of(facet: &Facet) -> impl Iterator<Item = (u32, u32, bool)> + '_ {
-    facet.rings().flat_map(|ring| {
-        let next = ring.iter().cycle().skip(1);
-        ring.iter().zip(next).map(|(&from, &to)| (from.min(to), from.max(to), from < to))
-    })
-}
-
 /// Facets that have the outline of an earlier one of the whole model, and whether that runs the other way round.
 fn doubled(model: &CityModel, facets: std::ops::Range<u32>) -> Vec<(u32, bool)> {
-    let mut keys: Vec<([u32; 4], u32)> =
-        model.facets.par_iter().zip(0..facets.end).map(|(facet, at)| (key(facet), at)).collect();
-    keys.par_sort_unstable();
+    let key_of = |facet: u32| key(&model.facets[facet as usize]);
     let mut doubled = Vec::new();
-    for alike in keys.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
-        let outline = |&(_, facet): &([u32; 4], u32)| {
-            let (outline, is_reversed) = canonical(&model.facets[facet as usize]);
-            (outline, facet, is_reversed)
-        };
-        let mut outlines: Vec<(Vec<u32>, u32, bool)> = alike.iter().map(outline).collect();
-        outlines.sort_unstable();
-        for same in outlines.chunk_by(|a, b| a.0 == b.0) {
-            doubled.extend(same[1..].iter().map(|(_, facet, is_reversed)| (*facet, *is_reversed != same[0].2)));
-        }
-    }
+    each_alike(
+        facets.end,
+        |facet| digest(key_of(facet).map(u64::from)),
+        key_of,
+        |alike| {
+            let outline = |&facet: &u32| {
+                let (outline, is_reversed) = canonical(&model.facets[facet as usize]);
+                (outline, facet, is_reversed)
+            };
+            let mut outlines: Vec<(Vec<u32>, u32, bool)> = alike.iter().map(outline).collect();
+            outlines.sort_unstable();
+            for same in outlines.chunk_by(|a, b| a.0 == b.0) {
+                doubled.extend(same[1..].iter().map(|(_, facet, is_reversed)| (*facet, *is_reversed != same[0].2)));
+            }
+        },
+    );
     doubled.retain(|(facet, _)| facets.contains(facet));
     doubled.sort_unstable();
     doubled

@@ -118,6 +118,8 @@ fn told(error: &las::Error) -> String {
 struct Collector<'a> {
     cloud: LasCloud,
     wanted: Option<&'a [u8]>,
+    /// Whether a point has it, of each class.
+    classes: [bool; 256],
     colors: Vec<[u16; 3]>,
     intensity: CloudField,
     class: CloudField,
@@ -145,6 +147,7 @@ impl Collector<'_> {
         Collector {
             cloud,
             wanted,
+            classes: [false; 256],
             colors: Vec::new(),
             intensity: CloudField::new("intensity", FieldKind::U16),
             class: CloudField::new("classification", FieldKind::U8),
@@ -162,8 +165,9 @@ impl Collector<'_> {
         let withheld = records.map(|record| if is_extended { record[15] & 4 != 0 } else { record[15] & 0x80 != 0 });
         let wanted = self.wanted;
         let cloud = &mut self.cloud;
+        let classes = &mut self.classes;
         let mut keeps = |(class, withheld): (u8, bool)| {
-            cloud.classes.insert(class);
+            classes[usize::from(class)] = true;
             let is_wanted = wanted.map_or(!NOISE.contains(&class), |wanted| wanted.contains(&class));
             cloud.noise += usize::from(withheld || (wanted.is_none() && !is_wanted));
             cloud.of_other_classes += usize::from(!withheld && wanted.is_some() && !is_wanted);
@@ -175,24 +179,22 @@ impl Collector<'_> {
         if let Some(colors) = piece.rgb() {
             self.colors.extend(kept(colors.map(|(r, g, b)| [r, g, b]), &keep));
         }
-        let fill = |field: &mut CloudField, values: &mut dyn Iterator<Item = f64>| {
-            kept(values, &keep).for_each(|value| field.push(value));
-        };
-        fill(&mut self.intensity, &mut piece.intensity().map(f64::from));
-        fill(&mut self.class, &mut piece.classification().map(f64::from));
-        fill(&mut self.returns[0], &mut piece.return_number().map(f64::from));
-        fill(&mut self.returns[1], &mut piece.number_of_returns().map(f64::from));
-        fill(&mut self.source, &mut piece.point_source_id().map(f64::from));
+        fill(&mut self.intensity, piece.intensity().map(u16::to_le_bytes), &keep);
+        fill(&mut self.class, piece.classification().map(u8::to_le_bytes), &keep);
+        fill(&mut self.returns[0], piece.return_number().map(u8::to_le_bytes), &keep);
+        fill(&mut self.returns[1], piece.number_of_returns().map(u8::to_le_bytes), &keep);
+        fill(&mut self.source, piece.point_source_id().map(u16::to_le_bytes), &keep);
         if let Some(times) = piece.gps_time().filter(|_| !self.cloud.times_left_out) {
-            fill(&mut self.time, &mut { times });
+            fill(&mut self.time, times.map(f64::to_le_bytes), &keep);
         }
         if let Some(infrared) = piece.nir() {
-            fill(&mut self.infrared, &mut infrared.map(f64::from));
+            fill(&mut self.infrared, infrared.map(u16::to_le_bytes), &keep);
         }
     }
 
     fn finish(self, header: &las::Header) -> LasCloud {
         let mut cloud = self.cloud;
+        cloud.classes = (0..=u8::MAX).filter(|&class| self.classes[usize::from(class)]).collect();
         // Sixteen bits, says the specification; many programs write eight.
         let shift = if self.colors.iter().flatten().any(|v| *v > 255) { 8 } else { 0 };
         cloud.colors = self.colors.iter().map(|color| color.map(|v| (v >> shift) as u8)).collect();
@@ -205,6 +207,12 @@ impl Collector<'_> {
         cloud.fields = fields.into_iter().filter(|field| field.bytes.iter().any(|byte| *byte != 0)).collect();
         cloud
     }
+}
+
+/// Adds the values of kept points, as the bytes that their field has of each.
+fn fill<const N: usize>(field: &mut CloudField, values: impl Iterator<Item = [u8; N]>, keep: &[bool]) {
+    field.bytes.reserve(N * keep.len());
+    kept(values, keep).for_each(|value| field.bytes.extend_from_slice(&value));
 }
 
 fn kept<T>(values: impl Iterator<Item = T>, keep: &[bool]) -> impl Iterator<Item = T> {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::signed_links::{EdgeRuns, Links};
 use super::sky::{CERTAIN, Sky, inner_point};
-use crate::city::validate::sorted_edges;
+use crate::city::edges::sorted_edges;
 use crate::city::{CityModel, CitySource, Facet};
 
 /// Facets of a shell that are asked, the largest: some may stand in a niche.
@@ -63,15 +63,25 @@ impl<'a> Object<'a> {
     pub fn new(model: &'a CityModel, facets: &'a [u32], source: &CitySource) -> Object<'a> {
         let edges = sorted_edges(model, facets);
         let mut links = Links::new(facets.len());
-        for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let mut is_sound = true;
+        for edge in edges.chunk_by(|a, b| a.ends() == b.ends()) {
             // More than two facets at one edge tell nothing of each other.
             if let [one, other] = edge {
-                let along = if one.2 == other.2 { EdgeRuns::Alike } else { EdgeRuns::Opposed };
-                links.tie(one.3 as usize, other.3 as usize, along);
+                let along = if one.rises() == other.rises() { EdgeRuns::Alike } else { EdgeRuns::Opposed };
+                links.tie(one.facet(), other.facet(), along);
+                is_sound &= along == EdgeRuns::Opposed;
+            } else {
+                is_sound = false;
             }
         }
         let (mut root_of, mut agrees): (Vec<usize>, Vec<bool>) =
             (0..facets.len()).map(|facet| links.root(facet)).unzip();
+        let precision_m = source.precision_m;
+        // Most objects: one shell, of which every edge has two facets that run along it in opposite directions.
+        if is_sound && root_of.iter().all(|&root| root == 0) {
+            let shells = vec![Shell { members: (0..facets.len()).collect(), is_closed: true }];
+            return Object { model, facets, precision_m, agrees, shells };
+        }
         // Where going round comes back with the other side up, every facet stands for itself.
         for member in 0..facets.len() {
             if links.is_twisted[root_of[member]] {
@@ -80,9 +90,9 @@ impl<'a> Object<'a> {
         }
         let mut is_open = vec![false; facets.len()];
         let mut meeting: Vec<(usize, bool)> = Vec::new();
-        for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        for edge in edges.chunk_by(|a, b| a.ends() == b.ends()) {
             meeting.clear();
-            meeting.extend(edge.iter().map(|&(_, _, rises, at)| (root_of[at as usize], rises == agrees[at as usize])));
+            meeting.extend(edge.iter().map(|edge| (root_of[edge.facet()], edge.rises() == agrees[edge.facet()])));
             meeting.sort_unstable();
             for same in meeting.chunk_by(|a, b| a.0 == b.0) {
                 is_open[same[0].0] |= !matches!(same, [one, other] if one.1 != other.1);
@@ -92,7 +102,7 @@ impl<'a> Object<'a> {
         order.sort_by_key(|&facet| root_of[facet]);
         let runs = order.chunk_by(|&a, &b| root_of[a] == root_of[b]);
         let shells = runs.map(|run| Shell { members: run.to_vec(), is_closed: !is_open[root_of[run[0]]] }).collect();
-        Object { model, facets, precision_m: source.precision_m, agrees, shells }
+        Object { model, facets, precision_m, agrees, shells }
     }
 
     /// For each shell the first that is the same: facets that stand three times and more in one place are shells of one facet each, of which

@@ -1,3 +1,7 @@
+use std::f64::consts::TAU;
+
+use proptest::prelude::*;
+
 use super::*;
 
 /// An outline alone.
@@ -155,7 +159,6 @@ fn no_ring_makes_it_panic() {
     }
 }
 
-use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 proptest! {
@@ -226,5 +229,78 @@ fn holes_that_stick_out_or_overlap_or_repeat_are_told() {
         let holes: Vec<&[[f64; 2]]> = holes.iter().map(|hole| &hole[..]).collect();
         let found = with_holes(&holes);
         assert!((found.1 - area).abs() < 1e-9 && found.2, "{found:?}, expected {area}");
+    }
+}
+
+/// Corners on an ellipse, which are convex whatever the shares of the way round are, with digits as files have them.
+fn convex() -> impl Strategy<Value = Vec<[f64; 2]>> {
+    let shares = proptest::collection::vec(0.05_f64..1.0, 3..=12);
+    (shares, 1.0_f64..40.0, 1.0_f64..40.0, 0.0_f64..TAU).prop_map(|(shares, wide, high, turn)| {
+        let whole: f64 = shares.iter().sum();
+        let mut along = turn;
+        let mut corner = |share: f64| {
+            along += share / whole * TAU;
+            [wide * along.cos(), high * along.sin()].map(|v| (v * 1000.0).round() / 1000.0)
+        };
+        let mut ring: Vec<[f64; 2]> = shares.into_iter().map(&mut corner).collect();
+        ring.dedup();
+        ring
+    })
+}
+
+proptest! {
+    #[test]
+    fn a_fan_of_a_convex_outline_covers_what_the_mesh_covers(ring in convex()) {
+        let by_mesh = triangulate(&ring).unwrap();
+        if let Some(fan) = convex_fan(&ring, 1e-3) {
+            let areas: Vec<f64> = fan.map(|[a, b, c]| doubled_area(ring[a], ring[b], ring[c]) / 2.0).collect();
+            let covered = area(&ring).unwrap();
+            prop_assert!(areas.iter().all(|area| *area > 0.0));
+            prop_assert!((areas.iter().sum::<f64>() - covered).abs() < 1e-9 * (1.0 + covered));
+            prop_assert!(!by_mesh.overlaps && by_mesh.crossings.is_empty());
+            prop_assert_eq!(areas.len(), ring.len() - 2);
+        } else {
+            // Three corners in line are the least that a file's digits leave of a triangle.
+            prop_assert!(area(&ring).unwrap() < 1.0);
+        }
+    }
+
+    #[test]
+    fn a_fan_of_any_outline_is_none_or_covers_it_without_overlaps(ring in proptest::collection::vec([-9..9_i32, -9..9_i32], 3..9)) {
+        let ring: Vec<[f64; 2]> = ring.into_iter().map(|corner| corner.map(f64::from)).collect();
+        if let Some(fan) = convex_fan(&ring, 1e-3) {
+            let fan: f64 = fan.map(|[a, b, c]| doubled_area(ring[a], ring[b], ring[c]) / 2.0).sum();
+            prop_assert_eq!(area(&ring), Some(fan));
+            prop_assert!(!overlaps(&ring));
+        }
+    }
+}
+
+#[test]
+fn a_fan_begins_where_its_smallest_triangle_is_largest() {
+    let gable = [[0.0, 0.0], [8.0, 0.0], [8.0, 6.0], [4.0, 9.0], [0.0, 6.0]];
+    let fan: Vec<[usize; 3]> = convex_fan(&gable, 1e-3).unwrap().collect();
+    assert_eq!(fan, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
+    let low_eaves = [[0.0, 0.0], [8.0, 0.0], [8.0, 1.0], [4.0, 9.0], [0.0, 1.0]];
+    let fan: Vec<[usize; 3]> = convex_fan(&low_eaves, 1e-3).unwrap().collect();
+    assert_eq!(fan, [[2, 3, 4], [2, 4, 0], [2, 0, 1]]);
+    // Corners in the middle of an edge, to the file's digits in or out.
+    for off in [-4e-4, 0.0, 4e-4] {
+        let wall = [[0.0, 0.0], [4.0, off], [8.0, 0.0], [8.0, 6.0], [4.0, 6.0 + off], [0.0, 6.0]];
+        let fan = convex_fan(&wall, 1e-3).unwrap();
+        assert!(fan.map(|[a, b, c]| doubled_area(wall[a], wall[b], wall[c])).all(|area| area > 1.0));
+    }
+}
+
+#[test]
+fn what_is_not_convex_has_no_fan() {
+    let l = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
+    let star = [0, 2, 4, 1, 3].map(|at| {
+        let (sin, cos) = (f64::from(at) * TAU / 5.0).sin_cos();
+        [cos, sin]
+    });
+    let clockwise = [SQUARE[3], SQUARE[2], SQUARE[1], SQUARE[0]];
+    for ring in [&l[..], &star, &clockwise, &[SQUARE, SQUARE].concat()] {
+        assert!(convex_fan(ring, 1e-3).is_none(), "{ring:?}");
     }
 }

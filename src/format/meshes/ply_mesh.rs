@@ -12,6 +12,10 @@ const CUT_OFF: &str = "the PLY is cut off: the header says more rows; get it aga
 
 /// Whether a PLY file has faces.
 pub fn is_ply_mesh(bytes: &[u8]) -> bool {
+    // Any other text would be taken for a header, as far as its first line goes: all of a JSON file.
+    if !bytes.trim_ascii_start().starts_with(b"ply") {
+        return false;
+    }
     let header = Header::read(bytes);
     header.is_ok_and(|header| header.elements.iter().any(|element| element.name == "face" && element.count > 0))
 }

@@ -315,8 +315,14 @@ fn position<'w>(words: impl Iterator<Item = &'w [u8]>) -> Result<[f64; 3], ObjPr
 
 /// What stands after the keyword, in UTF-8, or Latin-1 where it is not.
 fn name_of(line: &[u8]) -> Option<String> {
-    let name = decoded(line).split_whitespace().skip(1).collect::<Vec<_>>().join(" ");
-    (!name.is_empty()).then_some(name)
+    let text = decoded(line);
+    let mut words = text.split_whitespace().skip(1);
+    let mut name = words.next()?.to_owned();
+    for word in words {
+        name.push(' ');
+        name.push_str(word);
+    }
+    Some(name)
 }
 
 fn decoded(line: &[u8]) -> Cow<'_, str> {

@@ -14,13 +14,13 @@ const SEED: u64 = 20;
 const CAPTURES: u64 = 40;
 
 // Where the program stands; where it should stand is in `docs/calibration.md`. Evidence in bits took wrong poses away, and right ones
-// of few planes with them.
+// of few planes with them; honest sigmas made one that was `aligned` `undetermined`.
 /// Of 103 runs, 31 of them at the right place.
-const FEWEST_ALIGNED: usize = 12;
-const MOST_WRONG: usize = 2;
+const FEWEST_ALIGNED: usize = 10;
+const MOST_WRONG: usize = 0;
 const MOST_WITHHELD: usize = 13;
-const MOST_WRONGLY_HELD: usize = 2;
-const LEAST_PERCENT_INSIDE: usize = 40;
+const MOST_WRONGLY_HELD: usize = 0;
+const LEAST_PERCENT_INSIDE: usize = 50;
 
 /// All runs, made once.
 fn all() -> &'static [Run] {

@@ -7,7 +7,7 @@ struct Foreign {
     remedy: &'static str,
 }
 
-const EXPORT: &str = "export OBJ, glTF or COLLADA from the program that made it";
+const EXPORT: &str = "export OBJ or glTF from the program that made it";
 const UNPACK: &str = "unpack it";
 const NO_CITY: &str = "give the city model first";
 const CLOUD: &str = "a cloud goes in the place of the reconstruction";
@@ -19,11 +19,7 @@ const fn foreign(begins: &'static [u8], found: &'static str, remedy: &'static st
 /// In the order in which they are tried: longer beginnings before shorter ones that they begin with.
 const TABLE: [Foreign; 29] = [
     // Before UTF-16, whose mark it begins with.
-    foreign(
-        b"\xFF\xFE\xFF\x0ES\0k\0e\0t\0c\0h\0U\0p\0",
-        "this is a SketchUp file",
-        "export COLLADA or OBJ from SketchUp",
-    ),
+    foreign(b"\xFF\xFE\xFF\x0ES\0k\0e\0t\0c\0h\0U\0p\0", "this is a SketchUp file", "export OBJ or glTF from SketchUp"),
     foreign(b"\xFF\xFE", "this is UTF-16 text", "save it as UTF-8"),
     foreign(b"\xFE\xFF", "this is UTF-16 text", "save it as UTF-8"),
     foreign(b"BLENDER", "this is a Blender file", "export OBJ or glTF from Blender"),

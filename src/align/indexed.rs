@@ -5,7 +5,7 @@
 //!              sight. Then the blocks about all places that may be right are one city, and the rest is the usual way
 
 use super::options::{AlignOptions, Place};
-use super::task::{align_about, align_patches};
+use super::task::{align_about, align_patches, in_place_first};
 use super::whereabouts::{self, Whereabouts, sought};
 use super::{obstacle, report};
 use crate::city::{CityError, CityIndex, CityModel, PlanBox};
@@ -16,7 +16,7 @@ use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
 use crate::place_search::{CityWall, Disc, PlacePrior, PlaceSearch, search_places_by_walls};
 use crate::planes::{Patches, PreparedCity, patches};
 use crate::reconstruction::Reconstruction;
-use crate::verdict::{Alignment, Verdict};
+use crate::verdict::Alignment;
 
 /// Why an alignment to an index has no answer.
 #[derive(Debug, thiserror::Error)]
@@ -50,20 +50,18 @@ pub fn align_in_index(
     observer.progress(Stage::Patches, 0, 0);
     let patches = patches(reconstruction, superpixels, &options.limits.patches);
     let frame = index.read_frame()?;
-    let Some(start) = whereabouts::in_place(&frame, reconstruction, &patches, options) else {
-        return Search { index, frame, patches: &patches, options, observer }.alignment(prior, reconstruction);
-    };
-    // As `align` has it: first where the coordinates say, the false alarms that are allowed shared between the two.
-    let each = options.with_false_alarm(options.limits.verdict.false_alarm / 2.0);
-    let there = AlignOptions { place: Place::Start(start), ..each };
-    let city = PreparedCity::new(index.read_within(&about(&patches, options.limits.null_poses.least_reach_m))?);
-    let alignment = align_patches(&city, reconstruction, &patches, &there, observer)?;
-    match alignment.verdict {
-        Verdict::Failed => {
-            Search { index, frame, patches: &patches, options: &each, observer }.alignment(prior, reconstruction)
+    let in_place = whereabouts::in_place(&frame, reconstruction, &patches, options);
+    let align_by = |options: &AlignOptions| {
+        if matches!(options.place, Place::Anywhere(_)) {
+            return Search { index, frame: frame.clone(), patches: &patches, options, observer }
+                .alignment(prior, reconstruction);
         }
-        Verdict::Aligned | Verdict::Undetermined | Verdict::Ambiguous => Ok(IndexedAlignment { alignment, city }),
-    }
+        let near = about(&patches, options.limits.null_poses.least_reach_m);
+        let city = PreparedCity::new(index.read_within(&near)?);
+        let alignment = align_patches(&city, reconstruction, &patches, options, observer)?;
+        Ok(IndexedAlignment { alignment, city })
+    };
+    in_place_first(in_place, options, align_by, |found| found.alignment.verdict)
 }
 
 /// What stands about a cloud whose coordinates are the city's.

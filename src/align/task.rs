@@ -8,7 +8,7 @@ use super::whereabouts::{Whereabouts, up_of};
 use super::{evidence, report, whereabouts};
 use crate::correspondence::{Candidate, Hypotheses, PoseRefiner, Scene, candidates, joined, search};
 use crate::evidence::CandidateEvaluation;
-use crate::geometry::{Similarity, StartSigmas};
+use crate::geometry::{Similarity, Start, StartSigmas};
 use crate::imagery::LiftedSuperpixels;
 use crate::observer::{Cancelled, Observer, Stage, check_cancelled};
 use crate::planes::{Patches, PreparedCity, UpCandidate, Upright, patches, up_beyond_start};
@@ -27,16 +27,25 @@ pub fn align(
 ) -> Result<Alignment, Cancelled> {
     observer.progress(Stage::Patches, 0, 0);
     let patches = patches(reconstruction, superpixels, &options.limits.patches);
-    let Some(start) = whereabouts::in_place(&city.model, reconstruction, &patches, options) else {
-        return align_patches(city, reconstruction, &patches, options, observer);
-    };
-    // The false alarms that are allowed are shared between the two searches.
+    let in_place = whereabouts::in_place(&city.model, reconstruction, &patches, options);
+    let align_by = |options: &AlignOptions| align_patches(city, reconstruction, &patches, options, observer);
+    in_place_first(in_place, options, align_by, |alignment| alignment.verdict)
+}
+
+/// Aligns where the cloud's own coordinates say, if they say a place, and elsewhere only where that fails. The false alarms that are allowed are
+/// shared between the two searches.
+pub(super) fn in_place_first<Answer, Error>(
+    in_place: Option<Start>,
+    options: &AlignOptions,
+    align_by: impl Fn(&AlignOptions) -> Result<Answer, Error>,
+    verdict_of: impl Fn(&Answer) -> Verdict,
+) -> Result<Answer, Error> {
+    let Some(start) = in_place else { return align_by(options) };
     let each = options.with_false_alarm(options.limits.verdict.false_alarm / 2.0);
-    let there = AlignOptions { place: Place::Start(start), ..each };
-    let in_place = align_patches(city, reconstruction, &patches, &there, observer)?;
-    match in_place.verdict {
-        Verdict::Failed => align_patches(city, reconstruction, &patches, &each, observer),
-        Verdict::Aligned | Verdict::Undetermined | Verdict::Ambiguous => Ok(in_place),
+    let there = align_by(&AlignOptions { place: Place::Start(start), ..each })?;
+    match verdict_of(&there) {
+        Verdict::Failed => align_by(&each),
+        Verdict::Aligned | Verdict::Undetermined | Verdict::Ambiguous => Ok(there),
     }
 }
 

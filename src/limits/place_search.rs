@@ -29,7 +29,8 @@ pub struct PlaceSearchLimits {
     pub keep: usize,
     pub walls_of_keep: usize,
     pub apart_m: f64,
-    /// Side of the squares that a city is scanned in, metres. Chosen: the raster of one takes 200 MB.
+    /// Side of the squares that a city is scanned in, metres. Derived: words of 8 bytes for each half
+    /// metre, of which a tenth is near walls, take 200 MB.
     pub district_m: f64,
     /// Sharp poses whose lines of sight are looked along and that are compared, the best of them. Chosen: among more than that none is beyond doubt.
     pub most_places: usize,

@@ -14,7 +14,8 @@ pub struct UncertaintyLimits {
     /// Width of a piece of surface that is one observation. Chosen: windows and bays repeat every two to four metres.
     pub cell_m: f64,
     /// A building plane whose points weigh less together is not seen. Derived: one point, so that strays of little weight that are near any surface
-    /// say nothing. Measured: of 210 generated captures two come out wrong without it and none with it.
+    /// say nothing. Measured on 210 generated captures: 5 %
+    /// of the errors lie above their band without it, 2 % with it.
     pub least_points: f64,
     /// An object that is larger is no building, and is taken apart ... Chosen.
     pub largest_building_m: f64,

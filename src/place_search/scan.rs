@@ -153,7 +153,7 @@ impl Scan<'_> {
             return None;
         }
         let places = PLACES.len() as f64;
-        // A sum of places that is short of this by more than all that is left is no longer of use.
+        // A sum of places that is short of this by more than all that is left is of no use.
         let needed = (least_z / laid.per_sigma + laid.mean) * places;
         for wall in 0..first {
             let ends = u8::from(meets(wall, 1)) + u8::from(meets(wall, 2));
@@ -186,7 +186,7 @@ struct Tied {
     /// Of each wall and all after it.
     rest: Vec<f64>,
     heights: Vec<u64>,
-    /// For each step the weight that the walls that are looked at first must meet, with their middles and with all places.
+    /// For each step the weight that the walls that are looked at first must meet with their middles.
     least_met: Vec<f64>,
 }
 
@@ -277,5 +277,56 @@ impl Laid {
             variance += weight * weight * p * (1.0 - p);
         }
         (self.mean, self.per_sigma) = (mean, 1.0 / f64::sqrt(variance));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::Limits;
+    use crate::place_search::chance::CellCounts;
+    use crate::place_search::city_walls::city_walls;
+    use crate::place_search::views::views;
+    use crate::planes::{PreparedCity, patches, up_without_start};
+    use crate::random::Random;
+    use crate::synthetic::{Block, CaptureOptions, Ring};
+
+    #[test]
+    fn a_score_is_given_up_only_where_it_could_not_come_above_the_least() {
+        let (town, limits) = (Block::town(3, 2, 5), Limits::default());
+        let seen = Block::new(town.houses[..6].to_vec());
+        let survey = seen.capture(&Ring::street(24).stations(&seen), &CaptureOptions::default());
+        let patches = patches(&survey.sfm, None, &limits.patches);
+        let uprights = up_without_start(&patches, &limits);
+        let cloud = &views(&patches, &uprights, &limits).ok().unwrap()[0].cloud;
+        let own = &limits.place_search;
+        let walls = city_walls(&PreparedCity::new(town.city().unwrap()), None, &limits);
+        let raster = Raster::new(&walls, own);
+        let chance = CellCounts::of(&raster, &walls, own).chance();
+        let (scales, prior) = ([survey.city_from_sfm.scale], PlacePrior::default());
+        let scan = Scan {
+            walls: &walls,
+            raster: &raster,
+            chance: &chance,
+            cloud,
+            scales: &scales,
+            prior: &prior,
+            limits: own,
+        };
+        let tied = Tied::new(&scan, 0);
+        let (mut random, mut laid, mut given_up, mut told) = (Random::stream(4, 0), Laid::default(), 0, 0);
+        for wall in walls.iter().cycle().take(4000) {
+            laid.lay(&tied, angle(wall.normal) - tied.anchor.azimuth());
+            laid.at_scale(scales[0], tied.at(0), &chance);
+            let at = wall.at(random.unit());
+            let whole = scan.z(at, &laid, tied.at(0), f64::NEG_INFINITY);
+            for least_z in [0.0, 1.0, 2.0, 4.0] {
+                let bounded = scan.z(at, &laid, tied.at(0), least_z);
+                assert!(bounded == whole || (bounded.is_none() && whole.is_none_or(|z| z <= least_z + 1e-9)));
+                given_up += usize::from(bounded != whole);
+                told += usize::from(bounded.is_some_and(|z| z > least_z));
+            }
+        }
+        assert!(given_up > 100 && told > 100, "{given_up} {told}");
     }
 }

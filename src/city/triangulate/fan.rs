@@ -1,5 +1,5 @@
 //! A convex outline to triangles without a mesh: a fan from one of its corners. Most outlines of a city that are no quadrilaterals are
-//! gables and roofs of five or six corners; a constrained triangulation of one takes a hundred times as long.
+//! gables and roofs of five or six corners, for which a constrained triangulation was a third of the time of reading.
 
 use super::doubled_area;
 
